@@ -56,7 +56,7 @@ def build(processor: str) -> Path:
 
 def digest(machine: Machine, task: str, settings: Sequence[str]) -> str:
     """Returns the digest of the transitions of a task."""
-    command = [*machine.prefix, machine.program, ROOT / "config" / f"{task}.yaml", *settings]
+    command = [*machine.prefix, str(machine.program), f"{ROOT}/config/{task}.yaml", *settings]
     done = subprocess.run(
         command,
         env=os.environ | machine.environment,
@@ -69,7 +69,7 @@ def digest(machine: Machine, task: str, settings: Sequence[str]) -> str:
 
 def refuses(program: Path) -> bool:
     """Returns whether a program ends with a line and status 2 on a processor that is too old."""
-    command = [*TOO_OLD, program]
+    command = [*TOO_OLD, str(program)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     lines = [line for line in done.stderr.splitlines() if not line.startswith("qemu-x86_64: ")]
     return done.returncode == 2 and len(lines) == 1 and "this processor lacks" in lines[0]

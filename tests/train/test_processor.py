@@ -1,10 +1,10 @@
 """Checks what a processor is told that cannot run the compiled core."""
 
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import time_limit
 from rtg import processor
 
 KNOWN = "processor : 0\nflags\t\t: fpu sse2 avx avx2 bmi1 bmi2 fma\nbugs : fma\n"
@@ -17,7 +17,9 @@ def cpuinfo(tmp_path: Path) -> Path:
     return tmp_path / "cpuinfo"
 
 
-def test_it_is_named_what_the_processor_lacks(cpuinfo: Path, monkeypatch) -> None:
+def test_it_is_named_what_the_processor_lacks(
+    cpuinfo: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(processor, "_CPUINFO", cpuinfo)
     monkeypatch.setattr(processor.platform, "machine", lambda: "x86_64")
     monkeypatch.setattr(sys, "excepthook", sys.excepthook)
@@ -39,7 +41,5 @@ processor._CPUINFO = pathlib.Path({str(cpuinfo)!r})
 processor.platform.machine = lambda: "x86_64"
 processor.check()
 """
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=False
-    )
+    done = time_limit.run(sys.executable, "-c", program)
     assert (done.returncode, done.stdout, done.stderr) == (2, "", f"rtg: {SAID}\n")
