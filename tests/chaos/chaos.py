@@ -185,6 +185,8 @@ class Chaos:
                 time.sleep(0.5)
                 busy = _cpu_of(programs, seconds)
             for name, program in programs.items():
+                if program.poll() is not None:
+                    raise SystemExit(f"the {name} has ended")
                 self.report.most(f"strangers.cpu_of_{name}", busy[name] - idle[name], 0.03)
                 grown = resident(program.pid) - before[name]
                 self.report.most(f"strangers.growth_of_{name}_mb", grown, 5.0)
