@@ -26,6 +26,8 @@ GenerationReport filled() {
   r.stats.rejected_pushes = 22;
   r.stats.replays = 24;
   r.units_given_up = 23;
+  r.units_from_journal = 26;
+  r.rows_sha256 = "ab01";
   r.stats.iterations = {31, 29, 30};
   r.stats.pushing_iterations = {32, 35, 33, 34};
   r.stats.gaps = {0.0625F, 0.03125F, 0.375F};
@@ -46,7 +48,7 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
       R"("converged":10,"acceptable":11,"pruned":12,"infeasible":13,"iteration_limit":14,)"
       R"("line_search_failed":15,"singular":16,"non_finite":17,)"
       R"("illegal_starts":20,"undrawn_goals":25,"unsettled_goals":21,"replays":24,"rejected_pushes":22,)"
-      R"("units_given_up":23,)"
+      R"("units_given_up":23,"units_from_journal":26,)"
       R"("iterations_median":30.0,"iterations_p90":31.0,"pushing_converged":4,)"
       R"("pushing_iterations_median":34.0,"pushing_iterations_p90":35.0,)"
       R"("replay_gap_median":0.0625,"replay_gap_p90":0.375,)"
@@ -58,7 +60,7 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
       R"("iterations":[31,29,30],"pushing_iterations":[32,35,33,34],)"
       R"("replay_gaps":[0.0625,0.03125,0.375],"nodes":[)"
       R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7},)"
-      R"({"poses":[[-0.5,0.0,0.5]],"depth":9}]})");
+      R"({"poses":[[-0.5,0.0,0.5]],"depth":9}],"rows_sha256":"ab01"})");
 }
 
 TEST(Report, WithoutReverseStepsSaysNothingOfThem) {
