@@ -18,6 +18,7 @@ constexpr int kPictureSides = 16;      // the same, in pictures
 constexpr double kSameArea = 2e-4;     // difference of areas that count as one / area
 constexpr double kCollinear = 1e-9;    // sine of the turn at a vertex that is left out
 constexpr double kLeastCorner = 1e-6;  // sine of the turn at a convex corner
+constexpr double kSnap = 1e-7;         // distance at which vertices and edges count as one / reach
 
 /// GEOS's handle of a thread, with its last error.
 struct Context {
@@ -80,16 +81,45 @@ Geometry only_areas(Geometry geometry) {
   return checked(GEOSBuffer_r(geos(), geometry.get(), 0.0, 1));
 }
 
-/// Vertices are rounded to a grid of 2^-`bits` of the size, so that edges that differ by rounding
-/// alone are one.
-Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides, int bits = 36) {
+double reach_of(std::span<const Part> parts) {
   double reach = 0.0;
   for (const Part& part : parts) reach = std::max(reach, reach_from(Vector2d::Zero(), part));
-  const double grid = std::ldexp(1.0, std::ilogb(reach) - bits);
+  return reach;
+}
+
+/// Vertices are rounded to a grid of 2^-36 of the size. The area of the result is right to that,
+/// but it may be in more pieces than the union: part by part, rounding moves edges off each other.
+Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides) {
+  const double grid = std::ldexp(1.0, std::ilogb(reach_of(parts)) - 36);
   Geometry all = area_of(parts[0], sides);
   for (const Part& part : parts.subspan(1))
     all = only_areas(checked(GEOSUnionPrec_r(geos(), all.get(), area_of(part, sides).get(), grid)));
   return all;
+}
+
+/// Returns copies of all areas but that of the index `without` as one geometry.
+Geometry collected(std::span<const Geometry> areas, std::size_t without) {
+  std::vector<GEOSGeometry*> copies;
+  for (std::size_t k = 0; k < areas.size(); ++k)
+    if (k != without) copies.push_back(GEOSGeom_clone_r(geos(), areas[k].get()));
+  return checked(GEOSGeom_createCollection_r(geos(), GEOS_GEOMETRYCOLLECTION, copies.data(),
+                                             static_cast<unsigned>(copies.size())));
+}
+
+/// The union in as many pieces as it has: parts whose edges lie within kSnap of each other hang
+/// together. Each part is snapped to the vertices of those before it, then its edges to all
+/// vertices, so that neighbours have the same ones.
+Geometry seamless_union_of(std::span<const Part> parts, int sides) {
+  const double snap = kSnap * reach_of(parts);
+  std::vector<Geometry> areas;
+  for (const Part& part : parts) {
+    Geometry area = area_of(part, sides);
+    const Geometry before = collected(areas, areas.size());
+    areas.push_back(checked(GEOSSnap_r(geos(), area.get(), before.get(), snap)));
+  }
+  for (std::size_t k = 0; k < areas.size(); ++k)
+    areas[k] = checked(GEOSSnap_r(geos(), areas[k].get(), collected(areas, k).get(), snap));
+  return only_areas(checked(GEOSUnaryUnion_r(geos(), collected(areas, areas.size()).get())));
 }
 
 /// Returns the vertices of a ring, without the last, which is the first.
@@ -203,16 +233,19 @@ Moments union_moments(std::span<const Part> parts) {
 
 std::vector<std::vector<Vector2d>> outline(std::span<const Part> parts) {
   if (parts.size() == 1 && parts[0].radius == 0.0) return {parts[0].core.vertices};
-  const Geometry all = union_of(parts, kPictureSides);
-  std::vector<std::vector<Vector2d>> rings{vertices_of(GEOSGetExteriorRing_r(geos(), all.get()))};
-  for (int hole = 0; hole < GEOSGetNumInteriorRings_r(geos(), all.get()); ++hole)
-    rings.push_back(vertices_of(GEOSGetInteriorRingN_r(geos(), all.get(), hole)));
+  const Geometry all = seamless_union_of(parts, kPictureSides);
+  std::vector<std::vector<Vector2d>> rings;
+  for (int n = 0; n < GEOSGetNumGeometries_r(geos(), all.get()); ++n) {
+    const GEOSGeometry* piece = GEOSGetGeometryN_r(geos(), all.get(), n);
+    rings.push_back(vertices_of(GEOSGetExteriorRing_r(geos(), piece)));
+    for (int hole = 0; hole < GEOSGetNumInteriorRings_r(geos(), piece); ++hole)
+      rings.push_back(vertices_of(GEOSGetInteriorRingN_r(geos(), piece, hole)));
+  }
   return rings;
 }
 
 bool in_one_piece(std::span<const Part> parts) {
-  // Coarse: the vertices may come from a file, rounded.
-  return GEOSGetNumGeometries_r(geos(), union_of(parts, kQuadrantSides, 28).get()) == 1;
+  return GEOSGetNumGeometries_r(geos(), seamless_union_of(parts, kQuadrantSides).get()) == 1;
 }
 
 bool maps_onto_itself(std::span<const Part> parts, double angle) {

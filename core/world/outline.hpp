@@ -16,10 +16,12 @@ namespace rtg {
 Moments union_moments(std::span<const Part> parts);
 
 /// Returns the outline of the union of `parts`, for pictures: its outer ring, then those of holes.
-/// Round corners have 64 sides per turn. A single sharp part is returned as it is.
+/// Round corners have 64 sides per turn; where that leaves several pieces, the rings of each
+/// follow. A single sharp part is returned as it is.
 std::vector<std::vector<Vector2d>> outline(std::span<const Part> parts);
 
-/// Returns whether the union of `parts` is in one piece.
+/// Returns whether the union of `parts` is in one piece. Gaps of less than 1e-7 of the largest
+/// distance from the origin count as none, a common corner alone does not connect.
 bool in_one_piece(std::span<const Part> parts);
 
 /// Returns whether a turn by `angle` about the origin maps the union of `parts` onto itself.

@@ -161,5 +161,23 @@ TEST(Outline, OfAFrameHasAHole) {
   EXPECT_FALSE(in_one_piece(frame));
 }
 
+TEST(InOnePiece, AsksForMoreThanACommonCorner) {
+  const auto beside = [](double x, double y) {
+    return in_one_piece(std::vector<Part>{{box(1, 1)}, placed({{box(1, 1)}}, 0.0, {x, y})[0]});
+  };
+  EXPECT_TRUE(beside(1.0, 0.5));
+  EXPECT_TRUE(beside(1.0 + 1e-9, 0.5)) << "a gap by rounding";
+  EXPECT_FALSE(beside(1.0 + 1e-5, 0.5));
+  EXPECT_FALSE(beside(1.0, 1.0));
+}
+
+// Each disc is 1e-4 within the other, but the polygons of 64 sides for pictures are apart.
+TEST(Outline, OfDiscsThatHardlyOverlapHasBoth) {
+  const Vector2d to = 0.9999 * Vector2d(std::cos(kPi / 64), std::sin(kPi / 64));
+  const std::vector<Part> discs{disc(0.5), placed({disc(0.5)}, 0.0, to)[0]};
+  EXPECT_TRUE(in_one_piece(discs));
+  EXPECT_EQ(outline(discs).size(), 2);
+}
+
 }  // namespace
 }  // namespace rtg

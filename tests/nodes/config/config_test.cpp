@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/math/rng.hpp"
 #include "nodes/config/config_error.hpp"
 #include "nodes/config/field_writer.hpp"
 #include "nodes/config/train_preset.hpp"
@@ -230,6 +231,51 @@ TEST(Config, ShapesOfAllKindsAreCentredAndTheirTextReadsBackToTheSameBits) {
     const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
     EXPECT_EQ(again.task.scene.bodies[1].shape, read) << shape;
   }
+}
+
+/// Returns `corners` with `count` points near each edge, off it by up to `off`, as YAML.
+std::string with_points_on_edges(const std::vector<Vector2d>& corners, int count, double off,
+                                 Rng& rng) {
+  std::string text;
+  const auto add = [&text](const Vector2d& v) {
+    text += (text.empty() ? "[" : ", [") + number_text(v.x()) + ", " + number_text(v.y()) + "]";
+  };
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vector2d &v = corners[k], to = corners[(k + 1) % corners.size()] - v;
+    add(v);
+    for (int n = 0; n < count; ++n) {
+      const double x = rng.uniform(-off, off), along = (n + rng.uniform(0.2, 0.8)) / count;
+      add(v + along * to + Vector2d(x, rng.uniform(-off, off)));
+    }
+  }
+  return text;
+}
+
+TEST(Config, ConcavePolygonsWithPointsOnTheirEdgesReadBackToTheSameBits) {
+  const std::vector<std::vector<Vector2d>> outlines{
+      {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}},                   // L
+      {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}};  // U
+  Rng rng(1);
+  int read = 0;
+  for (const double off : {0.0, 1e-9, 1e-7, 1e-5, 1e-3, 1e-2})
+    for (int draw = 0; draw < 20; ++draw) {
+      const std::string ring = with_points_on_edges(outlines[static_cast<std::size_t>(draw % 2)],
+                                                    1 + draw / 2 % 2, off, rng);
+      const std::vector<std::string> settings{"task.bodies.1.shape={vertices: [" + ring + "]}",
+                                              "task.bodies.1.start=[5, 0, 0]"};
+      std::optional<Config> config;
+      try {
+        config = parsed("", settings);
+      } catch (const ConfigError&) {
+        continue;  // splits into pieces that are too thin
+      }
+      ++read;
+      EXPECT_NO_THROW({
+        const Config again = parse_config(canonical_yaml(*config), "canonical.yaml");
+        EXPECT_EQ(canonical_yaml(again), canonical_yaml(*config)) << ring;
+      }) << ring;
+    }
+  EXPECT_GT(read, 60);
 }
 
 TEST(Config, RangesOfStartsReadBackToTheSameBits) {
