@@ -48,13 +48,27 @@ bool determines_mean(const BodyGroup& group, const GoalTerm& term, const GoalDra
   return std::ranges::any_of(group.members, concerned);
 }
 
+/// Returns how little room a term on a body alone leaves to its pose: less is tighter. A pose is
+/// tighter than a region, of which the narrower is tighter, and that than an angle.
+std::pair<int, double> room_of(const GoalTerm& term) {
+  if (term.negated || std::holds_alternative<AngleIn>(term.condition)) return {2, 0.0};
+  if (const auto* in = std::get_if<CentreIn>(&term.condition)) return {1, half_width(in->region)};
+  if (const auto* stays = std::get_if<Stays>(&term.condition)) return {1, stays->distance};
+  return {0, 0.0};
+}
+
 }  // namespace
 
 std::size_t positioned_member(const GoalDraw& draw, const BodyGroup& group) {
+  std::size_t tightest = group.root;
+  std::pair<int, double> least{3, 0.0};
   for (const std::size_t i : group.members)
     for (const GoalTerm& term : draw.goal)
-      if (is_of_one_body(term) && concerns(term, draw.task.scene, i)) return i;
-  return group.root;
+      if (is_of_one_body(term) && concerns(term, draw.task.scene, i) && room_of(term) < least) {
+        tightest = i;
+        least = room_of(term);
+      }
+  return tightest;
 }
 
 bool draw_joint_values(GoalDraw& draw, BodyGroup& group) {

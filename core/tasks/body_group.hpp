@@ -13,8 +13,8 @@ struct BodyGroup {
   Poses poses;                       // of all bodies
 };
 
-/// Returns the member by whose pose place_tree() positions the group: the first that has a term of
-/// its own, otherwise the root.
+/// Returns the member by whose pose place_tree() positions the group: the one with the tightest
+/// term of its own (a pose, else the narrowest region, else an angle), the root if there is none.
 std::size_t positioned_member(const GoalDraw& draw, const BodyGroup& group);
 
 /// Gives each joint of the group a random value that its limits and the goal allow. Returns false

@@ -56,18 +56,24 @@ std::optional<Pose> beside(GoalDraw& draw, std::size_t i, std::size_t j, double 
                 .range = 2.0 * reach});
 }
 
-/// Returns the placed bodies that a term asks body `i` to touch, in random order.
+/// Returns whether `term` asks body `i` to touch bodies like body `j`.
+bool asks_to_touch(const GoalTerm& term, const Scene& scene, std::size_t i, std::size_t j) {
+  const auto* touches = std::get_if<Touches>(&term.condition);
+  if (!touches || term.negated || i == j || j == 0 || !concerns(term, scene, i)) return false;
+  const Body& other = scene.bodies[j];
+  return touches->other == "*" ? !other.fixed : touches->other == other.kind;
+}
+
+/// Returns the placed bodies that a term asks body `i` to touch, or to touch body `i`, in random
+/// order.
 std::vector<std::size_t> to_touch(GoalDraw& draw, std::size_t i) {
+  const Scene& scene = draw.task.scene;
   std::vector<std::size_t> found;
-  for (const GoalTerm& term : draw.goal) {
-    const auto* touches = std::get_if<Touches>(&term.condition);
-    if (!touches || term.negated || !concerns(term, draw.task.scene, i)) continue;
-    for (std::size_t j = 1; j < draw.state.poses.size(); ++j) {
-      const Body& other = draw.task.scene.bodies[j];
-      if (j == i || !draw.state.placed[j]) continue;
-      if (touches->other == "*" ? !other.fixed : touches->other == other.kind) found.push_back(j);
-    }
-  }
+  for (const GoalTerm& term : draw.goal)
+    for (std::size_t j = 1; j < scene.size(); ++j)
+      if (draw.state.placed[j] &&
+          (asks_to_touch(term, scene, i, j) || asks_to_touch(term, scene, j, i)))
+        found.push_back(j);
   return drawn(found, static_cast<int>(found.size()), draw.rng);
 }
 
@@ -92,6 +98,17 @@ std::optional<Pose> beside_any(GoalDraw& draw, std::size_t i) {
       static_cast<std::size_t>(1 + draw.rng.below(static_cast<int>(draw.task.scene.size()) - 1));
   if (j == i || !draw.state.placed[j]) return std::nullopt;
   return beside(draw, i, j, kFaceShareOfAny);
+}
+
+bool is_to_touch(const GoalDraw& draw, std::size_t i) {
+  const Scene& scene = draw.task.scene;
+  return std::ranges::any_of(draw.goal, [&](const GoalTerm& term) {
+    for (std::size_t j = 1; j < scene.size(); ++j)
+      if (asks_to_touch(term, scene, i, j) ||
+          (draw.state.placed[j] && asks_to_touch(term, scene, j, i)))
+        return true;
+    return false;
+  });
 }
 
 std::optional<Pose> in_touch(GoalDraw& draw, std::size_t i) {

@@ -1,7 +1,10 @@
 #include "core/tasks/goal_sampler.hpp"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
+#include "core/math/draws.hpp"
 #include "core/tasks/body_group.hpp"
 #include "core/tasks/contact_placement.hpp"
 #include "core/tasks/goal_draw.hpp"
@@ -14,18 +17,32 @@ constexpr int kAttempts = 1000;
 constexpr double kBesideShare = 0.5;    // share of proposals that put a body beside another one
 constexpr double kTouchingShare = 0.9;  // the same if the goal asks for that
 
+/// Returns whether a term says where body `i` is to lie.
+bool has_target(const GoalDraw& draw, std::size_t i) {
+  return std::ranges::any_of(draw.goal, [&](const GoalTerm& term) {
+    return !term.negated && concerns(term, draw.task.scene, i) &&
+           (std::holds_alternative<PoseNear>(term.condition) ||
+            std::holds_alternative<Covers>(term.condition));
+  });
+}
+
 /// Returns the probability with which a body is proposed beside another one: 0 if a term says where
 /// it is to lie, more than usual if a term says that it is to touch.
 double beside_share(const GoalDraw& draw, std::size_t i) {
-  double share = kBesideShare;
-  for (const GoalTerm& term : draw.goal) {
-    if (term.negated || !concerns(term, draw.task.scene, i)) continue;
-    if (std::holds_alternative<Touches>(term.condition)) share = kTouchingShare;
-    if (std::holds_alternative<PoseNear>(term.condition) ||
-        std::holds_alternative<Covers>(term.condition))
-      return 0.0;
+  if (has_target(draw, i)) return 0.0;
+  return is_to_touch(draw, i) ? kTouchingShare : kBesideShare;
+}
+
+/// Returns a random member that is to touch or to be touched; nothing if there is none or a term
+/// says where a member is to lie.
+std::optional<std::size_t> member_to_touch(GoalDraw& draw, const BodyGroup& group) {
+  std::vector<std::size_t> found;
+  for (const std::size_t i : group.members) {
+    if (has_target(draw, i)) return std::nullopt;
+    if (is_to_touch(draw, i)) found.push_back(i);
   }
-  return share;
+  if (found.empty()) return std::nullopt;
+  return drawn(found, 1, draw.rng)[0];
 }
 
 bool place_object(GoalDraw& draw, std::size_t i) {
@@ -46,18 +63,25 @@ bool place_object(GoalDraw& draw, std::size_t i) {
   return false;
 }
 
-/// Places a tree of jointed bodies: draws the values of its joints, then moves the tree to where
-/// the goal asks for one of its members. A fixed root stays. Returns whether one of kProposals
-/// tries succeeded.
+/// Moves a tree of jointed bodies as one until a member that is to touch another body does, else to
+/// where the goal asks for one of its members.
+void move_tree(GoalDraw& draw, BodyGroup& group) {
+  const auto touching = member_to_touch(draw, group);
+  if (touching && draw.rng.uniform(0.0, 1.0) < kTouchingShare)
+    if (const std::optional<Pose> pose = in_touch(draw, *touching))
+      return move_to(group, *touching, *pose);
+  const std::size_t positioned = positioned_member(draw, group);
+  move_to(group, positioned, pose_in_goal(draw, positioned));
+  aim_at_means(draw, group);
+}
+
+/// Places a tree of jointed bodies: draws the values of its joints, then moves the tree. A fixed
+/// root stays. Returns whether one of kProposals tries succeeded.
 bool place_tree(GoalDraw& draw, const BodyGroup& tree) {
   for (int k = 0; k < kProposals; ++k) {
     BodyGroup group = tree;
     if (!draw_joint_values(draw, group)) return false;
-    if (!draw.task.scene.bodies[group.root].fixed) {
-      const std::size_t positioned = positioned_member(draw, group);
-      move_to(group, positioned, pose_in_goal(draw, positioned));
-      aim_at_means(draw, group);
-    }
+    if (!draw.task.scene.bodies[group.root].fixed) move_tree(draw, group);
     if (try_add(draw, group)) return true;
   }
   return false;

@@ -11,7 +11,8 @@ namespace rtg::tasks {
 /// Draws a state that satisfies the tightened() goal. It places, in this order:
 ///
 ///   - each object where the terms on it ask for, at a random angle unless they tell one, or beside
-///     a placed body. Jointed bodies move as one. The last body of a term with a mean goes where
+///     a placed body. Jointed bodies move as one: the one with the tightest term to its place, or
+///     one that is to touch another until it does. The last body of a term with a mean goes where
 ///     that fits. All other terms are tested.
 ///   - the robot, with its angle of `task.start`: just behind a body as after a push (3 of 4
 ///     draws), or near a body but clear of all.

@@ -156,6 +156,67 @@ TEST(GoalTerms, TermsThatHoldAtOnceAreSampledTogether) {
   }
 }
 
+/// Two boxes of the kinds "a" and "b", 3 m apart along y, with a joint, and a wall.
+Task jointed_boxes(JointType type) {
+  Task task = letter_and_box();
+  task.scene.bodies[1] = {"a", "a", box(1, 1)};
+  task.scene.bodies[2] = {"b", "b", box(1, 1)};
+  task.scene.bodies[3] = {"wall", "wall", box(4, 1), 1.0, 0.5, true};
+  task.start = {{0, -6, 0}, {5, 0, 0}, {5, 3, 0}, {0, 3, 0}};
+  const bool slides = type == JointType::kPrismatic;
+  Joint joint{1, 2, {0, slides ? 3.0 : 1.5}, {0, slides ? 0.0 : -1.5}, slides ? 0.0 : -1.0, 1.0};
+  joint.type = type;
+  joint.axis = Vector2d::UnitY();
+  task.scene.joints = {joint};
+  return task;
+}
+
+void expect_sampled(const Task& task, const std::string& which) {
+  Rng rng(3);
+  for (int draw = 0; draw < 20; ++draw) {
+    Refusals refusals;
+    const std::optional<Poses> poses = sample_goal(task, rng, &refusals);
+    ASSERT_TRUE(poses) << which << ": " << main_reason(refusals, task.scene);
+    for (const GoalTerm& term : task.goal)
+      EXPECT_TRUE(holds(tightened(term, task.scene), task, *poses)) << which;
+    EXPECT_FALSE(first_overlap(task.scene, *poses, 0.02)) << which;
+    for (const Joint& joint : task.scene.joints) EXPECT_LT(joint_gap(joint, *poses), 1e-5) << which;
+  }
+}
+
+// The first member has the looser term, so that a place for it is seldom one for the other.
+TEST(GoalTerms, OfTwoJointedBodiesAreSampledTogether) {
+  const Condition pose = PoseNear{{1, 1, 1}, 0.1, 0.1};
+  const std::vector<std::pair<std::string, std::vector<GoalTerm>>> goals{
+      {"angle and pose", {{"a", AngleIn{0.8, 1.2}}, {"b", pose}}},
+      {"half-plane and pose", {{"a", CentreIn{HalfPlane{{0, 1}, 7}}}, {"b", pose}}},
+      {"stays and target", {{"a", Stays{6}}, {"b", Covers{{1, 1, 1}, 0.9}}}},
+      {"not and region",
+       {{"a", CentreIn{Disc{{5, 0}, 3}}, true}, {"b", CentreIn{Disc{{0, 0}, 0.2}}}}},
+      {"regions", {{"a", CentreIn{Disc{{1, -2}, 0.3}}}, {"b", CentreIn{Disc{{1, 1}, 0.3}}}}},
+  };
+  for (const auto& [which, goal] : goals) {
+    Task task = jointed_boxes(JointType::kRevolute);
+    task.goal = goal;
+    expect_sampled(task, which);
+  }
+}
+
+TEST(GoalTerms, AJointedBodySlidesIntoTouch) {
+  for (const JointType type : {JointType::kRevolute, JointType::kPrismatic})
+    for (const double gap : {0.03, 0.1}) {
+      Task task = jointed_boxes(type);
+      task.goal = {{"b", Touches{"wall", gap}}};
+      expect_sampled(task, "b at the wall");
+      task.scene.bodies.insert(task.scene.bodies.begin() + 1, {"c", "c", box(1, 1)});
+      task.start.insert(task.start.begin() + 1, {-5, 0, 0});
+      task.scene.joints[0].parent = 2;
+      task.scene.joints[0].child = 3;
+      task.goal = {{"c", Touches{"b", gap}}};
+      expect_sampled(task, "b at c, which is placed before");
+    }
+}
+
 TEST(GoalTerms, WhatCannotBeMetIsNamed) {
   Task task = letter_and_box();
   task.goal = {{"t", CentreIn{Disc{{0, 0}, 2}}}, {"t", CentreIn{Disc{{5, 5}, 1}}, false}};
