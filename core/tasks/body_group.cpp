@@ -9,25 +9,41 @@
 namespace rtg::tasks {
 namespace {
 
-/// Returns the least and the largest value that the limits of `joint` and the goal allow. Returns
-/// nothing if there is no such value, and counts the term that leaves none.
-std::optional<std::pair<double, double>> values_in_goal(GoalDraw& draw, const Joint& joint) {
+/// A range of the values of a joint; empty if least > most.
+struct Values {
+  double least = 0.0, most = 0.0;
+};
+
+/// Returns the part of `all` outside of `range`: that below or above it at random, each as likely
+/// as it is wide.
+Values outside(const Values& all, const JointIn& range, Rng& rng) {
+  const double below = std::max(0.0, std::min(all.most, range.least) - all.least);
+  const double above = std::max(0.0, all.most - std::max(all.least, range.most));
+  const bool is_below = rng.uniform(0.0, below + above) < below;
+  return is_below ? Values{all.least, all.least + below}
+                  : Values{std::max(all.least, range.most), all.most};
+}
+
+/// Returns values that the limits of `joint` and the goal allow. Returns nothing if there are none,
+/// and counts the term that leaves none.
+std::optional<Values> values_in_goal(GoalDraw& draw, const Joint& joint) {
   const double span =
       joint.type == JointType::kPrismatic ? 2.0 * draw.task.push.arena : std::numbers::pi;
-  double least = std::isfinite(joint.lower) ? joint.lower : -span;
-  double most = std::isfinite(joint.upper) ? joint.upper : span;
+  Values values{std::isfinite(joint.lower) ? joint.lower : -span,
+                std::isfinite(joint.upper) ? joint.upper : span};
   for (std::size_t k = 0; k < draw.goal.size(); ++k) {
     const GoalTerm& term = draw.goal[k];
-    if (term.negated || !concerns(term, draw.task.scene, joint)) continue;
+    if (!concerns(term, draw.task.scene, joint)) continue;
     const auto& range = std::get<JointIn>(term.condition);
-    least = std::max(least, range.least);
-    most = std::min(most, range.most);
-    if (least > most) {
+    values = term.negated
+                 ? outside(values, range, draw.rng)
+                 : Values{std::max(values.least, range.least), std::min(values.most, range.most)};
+    if (values.least > values.most) {
       ++draw.refusals.by_term[k];
       return std::nullopt;
     }
   }
-  return std::pair{least, most};
+  return values;
 }
 
 void move(BodyGroup& group, const Vector2d& by) {
@@ -79,7 +95,7 @@ bool draw_joint_values(GoalDraw& draw, BodyGroup& group) {
     if (!std::ranges::count(group.members, child)) continue;
     const auto values = values_in_goal(draw, joint);
     if (!values) return false;
-    set_joint_value(joint, draw.rng.uniform(values->first, values->second), group.poses);
+    set_joint_value(joint, draw.rng.uniform(values->least, values->most), group.poses);
   }
   return true;
 }

@@ -99,12 +99,28 @@ void tighten(Region& region, double sign) {
   region = inset(region, sign * spare(half_width(region)));
 }
 
-/// `around`: all values, of which a negated term leaves those outside of the range.
+/// `around`: all angles, of which a negated term leaves those outside of the range.
 void tighten_range(double& least, double& most, double sign, double around) {
   const double width = most - least;
   const double by = sign * spare((sign > 0.0 ? width : around - width) / 2.0);
   least += by;
   most -= by;
+}
+
+/// A negated term leaves what the limits allow on either side of the range.
+void tighten(JointIn& range, const GoalTerm& term, const Scene& scene) {
+  if (!term.negated) {
+    tighten_range(range.least, range.most, 1.0, 0.0);
+    return;
+  }
+  double below = kAnywhere, above = kAnywhere;
+  for (const Joint& joint : scene.joints) {
+    if (!concerns(term, scene, joint)) continue;
+    if (joint.lower < range.least) below = std::min(below, range.least - joint.lower);
+    if (joint.upper > range.most) above = std::min(above, joint.upper - range.most);
+  }
+  range.least -= spare(below);
+  range.most += spare(above);
 }
 
 }  // namespace
@@ -173,7 +189,7 @@ GoalTerm tightened(const GoalTerm& term, const Scene& scene) {
             [&](Touches& c) { c.gap -= sign * spare(c.gap); },
             [&](KeepsFrom& c) { c.gap += term.negated ? -spare(c.gap) : kGoalSpare; },
             [&](Stays& c) { c.distance -= sign * spare(c.distance); },
-            [&](JointIn& c) { tighten_range(c.least, c.most, sign, kAnywhere); }},
+            [&](JointIn& c) { tighten(c, term, scene); }},
       out.condition);
   return out;
 }

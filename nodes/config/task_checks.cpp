@@ -130,16 +130,22 @@ void check_joint(const tasks::GoalTerm& term, const Joint& joint, const tasks::T
                       "the joint of '" + child + "' can make a full turn",
                       "joints whose limits are less than 6.28 rad apart");
   const auto inner = std::get<tasks::JointIn>(tightened(term, task.scene).condition);
-  if (term.negated || std::max(joint.lower, inner.least) <= std::min(joint.upper, inner.most))
+  if (term.negated ? joint.lower <= inner.least || joint.upper >= inner.most
+                   : std::max(joint.lower, inner.least) <= std::min(joint.upper, inner.most))
     return;
   const auto text = [&](double value) {
     return slides ? length_text(value, task.units) : number_text(value);
   };
   const std::string unit = slides ? " m" : " rad", margin = text(tasks::kGoalSpare) + unit;
-  throw ConfigError(range.value.origin, path + '.' + range.key,
-                    "the joint of '" + child + "' cannot get " + margin + " into this range",
-                    "[least, most] in" + unit + " that overlaps its limits, " + text(joint.lower) +
-                        " to " + text(joint.upper) + ", by at least " + margin);
+  const std::string limits = text(joint.lower) + " to " + text(joint.upper);
+  throw ConfigError(
+      range.value.origin, path + '.' + range.key,
+      "the joint of '" + child +
+          (term.negated ? "' cannot get out of this range"
+                        : "' cannot get " + margin + " into this range"),
+      "[least, most] in" + unit +
+          (term.negated ? " that leaves a part of its limits, " + limits
+                        : " that overlaps its limits, " + limits + ", by at least " + margin));
 }
 
 /// Throws ConfigError if a body that a term compares with others has none of their kind.

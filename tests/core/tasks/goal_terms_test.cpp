@@ -114,45 +114,17 @@ TEST(CommonArea, IsThatOfTheOverlap) {
   EXPECT_EQ(common_area(square, moved(box(1, 1), 5, 0)), 0.0);
 }
 
-/// Each term alone, as sampled: in the state it holds, with room to spare.
-TEST(GoalTerms, SampledStatesMeetThemWithRoomToSpare) {
-  const std::vector<GoalTerm> terms{
-      {"t", AngleIn{1.0, 1.4}},
-      {"t", PoseNear{{-2, 1, 0.7}, 0.3, 0.2}},
-      {"t", Covers{{-2, 1, 0.7}, 0.9}},
-      {"t", Covers{{-2, 1, 0.7}, 0.95}},
-      {"box", Touches{"wall", 0.1}},
-      {"box", Touches{"t", 0.1}},
-      {"t", KeepsFrom{"*", 2.0}},
-      {"t", Stays{0.3}},
-      {"t", CentreIn{Polygon{{{0, 0}, {3, 0}, {0, 3}}}}},
-      {"t", CentreIn{Disc{{0, 0}, 4.0}}, true},
-      {"*", MeanIn{Disc{{0, 0}, 0.5}}},
-  };
-  for (const GoalTerm& term : terms) {
-    Task task = letter_and_box();
-    task.goal = {term};
-    Rng rng(1);
-    for (int draw = 0; draw < 20; ++draw) {
-      const std::optional<Poses> poses = sample_goal(task, rng);
-      ASSERT_TRUE(poses) << term.condition.index();
-      EXPECT_TRUE(holds(tightened(term, task.scene), task, *poses)) << term.condition.index();
-      EXPECT_FALSE(first_overlap(task.scene, *poses, 0.02));
-    }
-  }
-}
-
-TEST(GoalTerms, TermsThatHoldAtOnceAreSampledTogether) {
-  Task task = letter_and_box();
-  task.goal = {{"t", PoseNear{{5, -2, kPi / 2}, 0.3, 0.2}},
-               {"box", Touches{"t", 0.1}},
-               {"box", AngleIn{-0.3, 0.3}},
-               {"box", CentreIn{HalfPlane{{0, 1}, -2}}}};
-  Rng rng(2);
+/// Draws goal states, which are to be legal and to meet the goal with room to spare.
+void expect_sampled(const Task& task, const std::string& which) {
+  Rng rng(3);
   for (int draw = 0; draw < 20; ++draw) {
-    const std::optional<Poses> poses = sample_goal(task, rng);
-    ASSERT_TRUE(poses);
-    EXPECT_TRUE(succeeded(task, *poses));
+    Refusals refusals;
+    const std::optional<Poses> poses = sample_goal(task, rng, &refusals);
+    ASSERT_TRUE(poses) << which << ": " << main_reason(refusals, task.scene);
+    for (const GoalTerm& term : task.goal)
+      EXPECT_TRUE(holds(tightened(term, task.scene), task, *poses)) << which;
+    EXPECT_FALSE(first_overlap(task.scene, *poses, 0.02)) << which;
+    for (const Joint& joint : task.scene.joints) EXPECT_LT(joint_gap(joint, *poses), 1e-5) << which;
   }
 }
 
@@ -171,16 +143,79 @@ Task jointed_boxes(JointType type) {
   return task;
 }
 
-void expect_sampled(const Task& task, const std::string& which) {
-  Rng rng(3);
+// Each term alone.
+TEST(GoalTerms, SampledStatesMeetThemWithRoomToSpare) {
+  const std::vector<GoalTerm> terms{
+      {"t", AngleIn{1.0, 1.4}},
+      {"t", PoseNear{{-2, 1, 0.7}, 0.3, 0.2}},
+      {"t", Covers{{-2, 1, 0.7}, 0.9}},
+      {"t", Covers{{-2, 1, 0.7}, 0.95}},
+      {"box", Touches{"wall", 0.1}},
+      {"box", Touches{"t", 0.1}},
+      {"t", KeepsFrom{"*", 2.0}},
+      {"t", Stays{0.3}},
+      {"t", CentreIn{Polygon{{{0, 0}, {3, 0}, {0, 3}}}}},
+  };
+  for (const GoalTerm& term : terms) {
+    Task task = letter_and_box();
+    task.goal = {term};
+    expect_sampled(task, std::to_string(term.condition.index()));
+  }
+}
+
+// Each leaves little.
+TEST(GoalTerms, SampledStatesKeepOutOfNegatedTermsWithRoomToSpare) {
+  const std::vector<GoalTerm> terms{
+      {"t", AngleIn{0.5, 6.0}, true},
+      {"box", AngleIn{0.3, 3.1}, true},
+      {"t", PoseNear{{0, 0, 0}, 20.0, 2.8}, true},
+      {"t", Covers{{-2, 1, 0.7}, 0.01}, true},
+      {"box", Touches{"wall", 6.0}, true},
+      {"t", KeepsFrom{"box", 0.1}, true},
+      {"t", Stays{10.0}, true},
+      {"t", CentreIn{Disc{{0, 0}, 9.0}}, true},
+      {"*", MeanIn{Disc{{0, 0}, 6.0}}, true},
+  };
+  for (const GoalTerm& term : terms) {
+    Task task = letter_and_box();
+    task.goal = {term};
+    expect_sampled(task, "not " + std::to_string(term.condition.index()));
+  }
+}
+
+// Their joint moves from -1 to 1, from 0 to 1 if it slides.
+TEST(GoalTerms, SampledJointsMeetThemWithRoomToSpare) {
+  const JointType slides = JointType::kPrismatic;
+  const std::vector<GoalTerm> terms{
+      {"b", JointIn{0.8, 1.2}},
+      {"b", JointIn{-1.2, 0.97}, true},
+      {"b", JointIn{-0.97, 0.98}, true},
+      {"b", JointIn{0.5, 0.7, slides}},
+      {"b", JointIn{-0.1, 0.95, slides}, true},
+      {"*", JointIn{0.03, 2.0, slides}, true},
+  };
+  for (const GoalTerm& term : terms) {
+    Task task = jointed_boxes(std::get<JointIn>(term.condition).type);
+    task.goal = {term};
+    expect_sampled(task, "joint");
+    const auto& [least, most, type] = std::get<JointIn>(term.condition);
+    const auto inner = std::get<JointIn>(tightened(term, task.scene).condition);
+    EXPECT_EQ(inner.least < least, term.negated);
+    EXPECT_EQ(inner.most > most, term.negated);
+  }
+}
+
+TEST(GoalTerms, TermsThatHoldAtOnceAreSampledTogether) {
+  Task task = letter_and_box();
+  task.goal = {{"t", PoseNear{{5, -2, kPi / 2}, 0.3, 0.2}},
+               {"box", Touches{"t", 0.1}},
+               {"box", AngleIn{-0.3, 0.3}},
+               {"box", CentreIn{HalfPlane{{0, 1}, -2}}}};
+  Rng rng(2);
   for (int draw = 0; draw < 20; ++draw) {
-    Refusals refusals;
-    const std::optional<Poses> poses = sample_goal(task, rng, &refusals);
-    ASSERT_TRUE(poses) << which << ": " << main_reason(refusals, task.scene);
-    for (const GoalTerm& term : task.goal)
-      EXPECT_TRUE(holds(tightened(term, task.scene), task, *poses)) << which;
-    EXPECT_FALSE(first_overlap(task.scene, *poses, 0.02)) << which;
-    for (const Joint& joint : task.scene.joints) EXPECT_LT(joint_gap(joint, *poses), 1e-5) << which;
+    const std::optional<Poses> poses = sample_goal(task, rng);
+    ASSERT_TRUE(poses);
+    EXPECT_TRUE(succeeded(task, *poses));
   }
 }
 
