@@ -10,11 +10,15 @@ namespace rtg::tasks {
 struct Units {
   double length = 1.0;   // [m]
   double density = 1.0;  // [kg/m²]
+  bool rounds = true;    // whether length_of() and density_of() round
 
   /// Returns a length given in metres, or a density in kg/m², in these units. It is rounded to
   /// 1e-10, so that equal tasks of different sizes get equal bits.
-  double length_of(double metres) const { return rounded(metres / length); }
-  double density_of(double given) const { return rounded(given / density); }
+  double length_of(double metres) const { return on_grid(metres / length); }
+  double density_of(double given) const { return on_grid(given / density); }
+
+  /// Returns rounded(x), or x if these units do not round.
+  double on_grid(double x) const { return rounds ? rounded(x) : x; }
 
   static double rounded(double x) { return std::round(1e10 * x) / 1e10; }
 

@@ -46,11 +46,11 @@ bool is_off_centre(const Shape& shape) {
 }
 
 /// Returns the shape with its numbers rounded, so that its text reads back to the bit.
-Shape on_grid(const Shape& shape) {
+Shape on_grid(const Shape& shape, const Units& units) {
   std::vector<Part> parts = shape.parts();
   for (Part& part : parts) {
-    for (Vector2d& v : part.core.vertices) v = config::on_grid(v);
-    part.radius = Units::rounded(part.radius);
+    for (Vector2d& v : part.core.vertices) v = {units.on_grid(v.x()), units.on_grid(v.y())};
+    part.radius = units.on_grid(part.radius);
   }
   return Shape(std::move(parts));
 }
@@ -253,7 +253,7 @@ Shape read_shape(const ConfigNode& section, const std::string& path, const Units
   Shape shape(compound ? read_parts(form.value, reader.path(form.key), units)
                        : read_simple(reader, form));
   if (is_off_centre(shape)) shape = shape.centred();
-  if (form.key != "regular" || find(section, "rounding")) shape = on_grid(shape);
+  if (form.key != "regular" || find(section, "rounding")) shape = on_grid(shape, units);
   if (shape.radius() > kMaxRadius)
     refuse("reaches " + std::to_string(std::lround(shape.radius() * units.length)) +
                " m from its centre",

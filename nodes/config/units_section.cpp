@@ -12,7 +12,8 @@ namespace {
 using Kind = ConfigNode::Kind;
 
 constexpr double kLeast = 1e-9, kMost = 1e9;  // scale [m], density of the robot [kg/m²]
-constexpr int kDigits = 14;                   // of the robot's radius; the rest are rounding errors
+constexpr double kNearSize = 3.0;  // largest number of the robot's shape in its own units
+constexpr int kDigits = 14;        // of the robot's radius; the rest are rounding errors
 
 /// Returns the largest magnitude of a number in the tree, but for numbers of sides.
 double largest_number(const ConfigNode& node) {
@@ -40,7 +41,9 @@ double robot_radius(const ConfigNode& robot) {
   const ConfigEntry* shape = find(robot, "shape");
   const double largest = shape ? largest_number(shape->value) : 0.0;
   if (largest < kLeast || largest > kMost) return tasks::kRobotRadius;
-  const tasks::Units near{std::pow(10.0, std::round(std::log10(largest))), 1.0};
+  // Of the size of the robot, so that robots that differ in scale alone have the same numbers
+  // there; not rounded, because what is rounded there would not be in the units of the task.
+  const tasks::Units near{largest / kNearSize, 1.0, false};
   try {
     const double radius = read_shape(shape->value, "", near).radius() * near.length;
     return with_digits(radius, kDigits);

@@ -56,11 +56,12 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
       R"("generation_stages":{"goals":{"wall_s":1.5,"cpu_s":2.5},"solves":{"wall_s":3.5,"cpu_s":40.5},)"
       R"("replays":{"wall_s":6.5,"cpu_s":13.0},)"
       R"("branches":{"wall_s":8.5,"cpu_s":26.0}},"generate_wall_s":42.5,"generate_cpu_s":43.5,)"
+      R"("rows_sha256":"ab01",)"
       R"("shortfalls":["too few","none moves"],)"
       R"("iterations":[31,29,30],"pushing_iterations":[32,35,33,34],)"
       R"("replay_gaps":[0.0625,0.03125,0.375],"nodes":[)"
       R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7},)"
-      R"({"poses":[[-0.5,0.0,0.5]],"depth":9}],"rows_sha256":"ab01"})");
+      R"({"poses":[[-0.5,0.0,0.5]],"depth":9}]})");
 }
 
 TEST(Report, WithoutReverseStepsSaysNothingOfThem) {

@@ -2,12 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "nodes/config/config.hpp"
 #include "nodes/config/field_reader.hpp"
+#include "nodes/config/yaml_parser.hpp"
+#include "nodes/files/regular_file.hpp"
 #include "tests/support/generation_run.hpp"
 
 namespace rtg::config {
@@ -15,7 +22,7 @@ namespace {
 
 /// Gathering with all lengths times `scale` and all densities times `density`.
 std::string gathering(double scale, double density) {
-  const auto m = [scale](double x) { return number_text(std::round(1e9 * scale * x) / 1e9); };
+  const auto m = [scale](double x) { return number_text(scale * x); };
   const auto body = [&](const std::string& name, const std::string& shape, double x, double y,
                         double theta) {
     return "    - {name: " + name + ", kind: " + (name == "robot" ? name : "box") +
@@ -61,7 +68,83 @@ TEST_P(Scale, GivesTheSameTransitions) {
 
 INSTANTIATE_TEST_SUITE_P(Scales, Scale,
                          ::testing::Values(std::pair{0.05, 1.0}, std::pair{50.0, 1.0},
-                                           std::pair{1.0, 1000.0}, std::pair{0.03, 730.0}));
+                                           std::pair{1.0, 1000.0}, std::pair{0.03, 730.0},
+                                           std::pair{1.0 / 3.0, 1.0}));
+
+// Keys whose numbers are lengths, in a list or a list of lists; of those of poses the first two
+// are.
+const std::set<std::string> kLengths{"box",           "disc",     "vertices", "polygon",
+                                     "rounding",      "grown",    "radius",   "centre",
+                                     "size",          "offset",   "gap",      "stays",
+                                     "stride",        "strides",  "arena",    "scale",
+                                     "on_parent",     "on_child", "slides",   "start_jitter",
+                                     "randomisation", "x",        "y",        "within",
+                                     "start",         "pose",     "at"};
+const std::map<std::string, std::size_t> kLengthsInList{
+    {"start", 2}, {"pose", 2}, {"at", 2}, {"within", 1}};
+
+/// Multiplies the first `count` numbers of a list, or all of a tree without mappings.
+void scale_numbers(ConfigNode& node, double scale, std::size_t count) {
+  if (node.kind == ConfigNode::Kind::kScalar) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.15g", scale * std::stod(node.scalar));
+    node.scalar = text;
+  }
+  for (std::size_t k = 0; k < std::min(count, node.items.size()); ++k)
+    scale_numbers(node.items[k], scale, node.items.size());
+}
+
+/// Multiplies all lengths and densities of a section of a task.
+void scale_section(ConfigNode& node, double scale, double density) {
+  for (ConfigNode& item : node.items) scale_section(item, scale, density);
+  const ConfigEntry* type = find(node, "type");
+  const bool slides = type && type->value.scalar == "prismatic";
+  for (auto& [key, origin, value, comment] : node.entries) {
+    const auto some = kLengthsInList.find(key);
+    if (value.kind == ConfigNode::Kind::kMap)
+      scale_section(value, scale, density);
+    else if (kLengths.contains(key) || (slides && key == "limits"))
+      scale_numbers(value, scale, some == kLengthsInList.end() ? 1000 : some->second);
+    else if (key == "density")
+      scale_numbers(value, density, 1);
+    else
+      scale_section(value, scale, density);
+  }
+}
+
+/// Returns the text of a file of ours with its task scaled; nothing if the task is another file's.
+std::optional<std::string> scaled(const std::filesystem::path& file, double scale, double density) {
+  ConfigNode root = parse_yaml(files::read_regular(file, 100000).text, file);
+  for (ConfigEntry& section : root.entries) {
+    if (section.key != "task") continue;
+    if (section.value.kind != ConfigNode::Kind::kMap) return std::nullopt;
+    scale_section(section.value, scale, density);
+    for (ConfigEntry& entry : section.value.entries)
+      for (ConfigNode& body : entry.value.items)
+        if (entry.key == "bodies" && !find(body, "density"))
+          body.entries.push_back({"density", "", token_node(number_text(density))});
+  }
+  return yaml_text(root);
+}
+
+TEST(ScaledFile, OfEveryTaskOfOursGivesTheSameTask) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(RTG_CONFIG_FOLDER))
+    for (const auto& [scale, density] : {std::pair{1.0 / 3.0, 1.0}, std::pair{1.0 / 7.0, 7.0},
+                                         std::pair{0.05, 1000.0}, std::pair{50.0, 0.3}}) {
+      if (entry.path().extension() != ".yaml") continue;
+      const auto text = scaled(entry.path(), scale, density);
+      if (!text) continue;
+      const Config one = load_config(entry.path()), other = parse_config(*text, entry.path());
+      EXPECT_EQ(other.task.scene.bodies, one.task.scene.bodies) << entry.path() << scale;
+      EXPECT_EQ(other.task.goal, one.task.goal) << entry.path() << scale;
+      EXPECT_EQ(task_hash(other.task), task_hash(one.task)) << entry.path() << scale;
+      const Config again = parse_config(canonical_yaml(other), "canonical.yaml");
+      EXPECT_EQ(canonical_yaml(again), canonical_yaml(other)) << entry.path() << scale;
+      ++count;
+    }
+  EXPECT_GT(count, 40);
+}
 
 TEST(ScaleKey, StandsInThePlaceOfTheRobotsRadius) {
   const Config config = parse_config(gathering(1.0, 1.0) + "  scale: 0.4\n", "gathering.yaml");
