@@ -57,7 +57,7 @@ def test_the_failure_of_a_program_is_that_of_the_run(plan, tmp_path):
     coordinator = tmp_path / "rtg_beam_coordinator"
     for status, error in ((1, RunError), (2, UserError)):
         coordinator.write_text(f"#!/bin/sh\necho no such body; exit {status}\n")
-        with display(io.StringIO()) as shown, pytest.raises(error, match=r"no such body$"):
+        with display(io.StringIO(), 100.0) as shown, pytest.raises(error, match=r"no such body$"):
             graph_run.run(plan, shown)
 
 
@@ -67,7 +67,7 @@ def test_restarts_are_told_and_counted(plan, tmp_path):
     once = f"mkdir {tmp_path}/died-$3 || exec sleep infinity; kill -KILL $$"
     worker.write_text(f"#!/bin/sh\n{once}\n")
     out = io.StringIO()
-    with display(out) as shown:
+    with display(out, 100.0) as shown:
         assert graph_run.run(plan, shown)["worker_restarts"] == 2
     assert "] reverse_worker_1 was killed by SIGKILL, started again\n" in out.getvalue()
 
@@ -97,7 +97,7 @@ def test_what_the_network_lacks_is_told(plan, monkeypatch):
     )
     monkeypatch.setattr(graph_run, "open_bus", lambda url, key: bus)
     out = io.StringIO()
-    with display(out) as shown:
+    with display(out, 100.0) as shown:
         graph_run.run(plan, shown)
     assert "a small buffer\n" in out.getvalue()
 
@@ -106,14 +106,14 @@ def test_work_that_was_given_up_is_told(plan, tmp_path):
     report = json.dumps({**REPORT, "units_given_up": 2})
     coordinator = tmp_path / "rtg_beam_coordinator"
     coordinator.write_text(f"#!/bin/sh\necho '{report}' > \"$3/generation.json\"\nexit 3\n")
-    with display(io.StringIO()) as shown:
+    with display(io.StringIO(), 100.0) as shown:
         measured = graph_run.run(plan, shown)
     assert measured["defects"] == ["the coordinator gave up 2 units of work"]
 
 
 def test_a_search_that_falls_short_has_results_and_defects(plan, tmp_path):
     (tmp_path / "rtg_beam_coordinator").write_text(f"#!/bin/sh\n{FALLS_SHORT}\n")
-    with display(io.StringIO()) as shown:
+    with display(io.StringIO(), 100.0) as shown:
         measured = graph_run.run(plan, shown)
     assert measured["defects"] == SHORT
     assert plan.transitions_file.is_file()
@@ -122,7 +122,7 @@ def test_a_search_that_falls_short_has_results_and_defects(plan, tmp_path):
 def test_a_consumer_that_fails_after_a_search_that_fell_short_is_a_failure(plan, tmp_path):
     (tmp_path / "rtg_beam_coordinator").write_text(f"#!/bin/sh\n{FALLS_SHORT}\n")
     (tmp_path / "python").write_text("#!/bin/sh\nsleep 1; echo no memory; exit 1\n")
-    with display(io.StringIO()) as shown, pytest.raises(RunError, match=r"no memory$"):
+    with display(io.StringIO(), 100.0) as shown, pytest.raises(RunError, match=r"no memory$"):
         graph_run.run(plan, shown)
 
 
@@ -143,7 +143,7 @@ def test_a_resumed_run_still_tells_what_its_generation_gave_up(plan, monkeypatch
 
 
 def test_a_coordinator_that_was_never_heard_leaves_a_whole_report(plan):
-    with display(io.StringIO()) as shown:
+    with display(io.StringIO(), 100.0) as shown:
         measured = graph_run.run(plan, shown)
     assert json.loads(plan.report_file.read_text()) == REPORT
     assert plan.transitions_file.is_file()

@@ -88,7 +88,7 @@ def test_a_resumed_run_goes_on_from_its_journal_and_removes_it(tmp_path):
     (tmp_path / "config.yaml").write_text(_core.Config.from_file(TINY).yaml)
     generated(journal, settings=[])
     plan = plan_of(tmp_path, "--resume", "--interactions", "900", "--workers", "1")
-    with display(io.StringIO()) as shown:
+    with display(io.StringIO(), 100.0) as shown:
         run._generate_and_train(plan, shown)
     assert run_folder.read_json(plan.report_file)["units_from_journal"] > 0
     assert not journal.exists()
@@ -96,7 +96,7 @@ def test_a_resumed_run_goes_on_from_its_journal_and_removes_it(tmp_path):
 
 def test_a_journal_left_behind_complete_transitions_is_removed(tmp_path):
     plan = plan_of(tmp_path, str(TINY))
-    with display(io.StringIO()) as shown:
+    with display(io.StringIO(), 100.0) as shown:
         run._generate_and_train(plan, shown)
         (tmp_path / run_folder.JOURNAL_FILE).touch()  # as a kill just before its removal leaves it
         run._generate_and_train(plan_of(tmp_path, "--resume"), shown)

@@ -20,7 +20,7 @@ from rich.text import Text
 
 from rtg.run.clock import duration, process_age
 from rtg.run.run_state import RunState
-from rtg.run.time_left import TimeLeft
+from rtg.run.time_left import TimeLeft, words
 
 _REDRAW = 0.2  # [s]
 
@@ -88,25 +88,25 @@ class TimedLines:
 class PlainDisplay(TimedLines):
     """Prints a line when the state of the run changes."""
 
-    def __init__(self, out: TextIO) -> None:
+    def __init__(self, out: TextIO, usual_rate: float) -> None:
         super().__init__(out)
         self._shown = RunState()
-        self._left = TimeLeft()
+        self._left = TimeLeft(usual_rate)
 
     def show(self, state: RunState) -> None:
         last = self._shown
-        left = self._left.seconds(state, time.monotonic())
-        most = "" if left is None else f", at most {duration(left)} left"
+        left = words(self._left.seconds(state, time.monotonic()), state)
+        end = left and f", {left}"
         if (state.phase, state.layer) != (last.phase, last.layer):
             counts = f"{state.transitions:,} of {state.target:,} transitions"
-            self.note(f"{counts}: {generation_text(state)}{most}")
+            self.note(f"{counts}: {generation_text(state)}{end}")
         tenth = max(1, state.budget // 10)
         if (
             state.interactions // tenth != last.interactions // tenth
             or state.evaluations != last.evaluations
         ):
             counts = f"{state.interactions:,} of {state.budget:,} interactions"
-            self.note(f"{counts}: {training_text(state)}{most}")
+            self.note(f"{counts}: {training_text(state)}{end}")
         self._shown = state
 
 
@@ -121,23 +121,23 @@ class _Counts(ProgressColumn):
 class _Time(ProgressColumn):
     """The column of the bar of the whole run: the time since the command, and what is left."""
 
-    left: float | None = None  # [s]
+    left = ""  # in words
 
     def render(self, task: Task) -> Text:
-        left = "" if self.left is None else f", at most {duration(self.left)} left"
-        return Text(f"{duration(process_age())}{left}", style="progress.elapsed")
+        end = self.left and f", {self.left}"
+        return Text(f"{duration(process_age())}{end}", style="progress.elapsed")
 
 
 class LiveDisplay:
     """Shows progress bars that change in place: of the whole run, by its time, and of its halves,
     each with a line of text below."""
 
-    def __init__(self, console: Console) -> None:
+    def __init__(self, console: Console, usual_rate: float) -> None:
         self._console = console
         self._time = _Time()
         self._run = self._bar("run", self._time)
         self._bars = [self._bar("generate", _Counts()), self._bar("train", _Counts())]
-        self._left = TimeLeft()
+        self._left = TimeLeft(usual_rate)
         # No refresh thread, because this process starts other processes with fork.
         self._live = Live(console=console, auto_refresh=False)
         self._drawn = 0.0
@@ -166,10 +166,11 @@ class LiveDisplay:
         generate, train = self._bars
         only = TaskID(0)
         now = time.monotonic()
-        self._time.left = self._left.seconds(state, now)
-        if self._time.left is not None:
+        left = self._left.seconds(state, now)
+        self._time.left = words(left, state)
+        if left is not None:
             age = process_age()
-            self._run.update(only, completed=age, total=age + self._time.left)
+            self._run.update(only, completed=age, total=age + left)
         generate.update(only, completed=state.transitions, total=state.target or None)
         rows: list[RenderableType] = [self._run]
         if state.generates:
@@ -186,7 +187,12 @@ def _indented(words: str) -> Text:
     return Text(f"         {words}", style="dim", no_wrap=True, overflow="ellipsis")
 
 
-def display(out: TextIO) -> Display:
-    """Returns a LiveDisplay if `out` is a terminal, else a PlainDisplay."""
+def display(out: TextIO, usual_rate: float) -> Display:
+    """Returns a LiveDisplay if `out` is a terminal, else a PlainDisplay.
+
+    `usual_rate`: of interactions, before their own is known [1/s].
+    """
     console = Console(file=out)
-    return LiveDisplay(console) if console.is_terminal else PlainDisplay(out)
+    if console.is_terminal:
+        return LiveDisplay(console, usual_rate)
+    return PlainDisplay(out, usual_rate)

@@ -15,6 +15,7 @@ from rtg.run.plan import RunPlan, make_plan
 from rtg.run.progress import Display, display
 from rtg.run.run_args import RunArgs
 from rtg.run.run_times import RunTimes
+from rtg.run.time_left import usual_rate
 
 
 def run(args: RunArgs) -> int:
@@ -36,7 +37,8 @@ def run(args: RunArgs) -> int:
 
 def _carry_out(plan: RunPlan) -> int:
     """Generates, trains and writes the results; returns the exit status."""
-    with RunTimes(display(sys.stdout)) as shown, EarlyPictures(plan, shown.note) as pictures:
+    screen = display(sys.stdout, usual_rate(plan.config.train))
+    with RunTimes(screen) as shown, EarlyPictures(plan, shown.note) as pictures:
         for note in (f"{plan.title}: {plan.folder}", *plan.notes):
             shown.note(note)
         try:

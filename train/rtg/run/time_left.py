@@ -2,24 +2,39 @@
 
 from __future__ import annotations
 
+from rtg import _core
+from rtg.run.clock import duration
 from rtg.run.run_state import FINISHED, RateMeter, RunState
 
 _WINDOW = 30.0  # over which the rate of transitions is measured [s]
-_USUAL_RATE = 600.0  # of interactions, before any is known [1/s]
+_GRADIENT_STEPS = 140.0  # of learning, the median of docs/results/tasks [1/s]
+_RESULTS = 20.0  # for the last evaluation and pictures, 8 s in the middle there [s]
+
+
+def usual_rate(train: _core.TrainConfig) -> float:
+    """Returns how fast learning usually is, for as long as its own rate is not known.
+
+    In interactions per second.
+    """
+    return _GRADIENT_STEPS * train.train_frequency / train.gradient_steps
 
 
 class TimeLeft:
-    """The remaining time of a run, at most: all work to come at the present rates.
+    """The remaining time of a run: all work to come at the present rates, then the results.
 
     Training may end before its budget is used up (train.stop_at_success), and over LCM it goes on
-    beside the generation.
+    beside the generation. `usual_rate`: of interactions, before theirs is known [1/s].
     """
 
-    def __init__(self) -> None:
+    def __init__(self, usual_rate: float) -> None:
         self._transitions = RateMeter(_WINDOW)
+        self._usual_rate = usual_rate
 
     def seconds(self, state: RunState, now: float) -> float | None:
-        """Returns the time [s]; None before the first transition. `now`: any clock [s]."""
+        """Returns the time [s]; None before the first transition. `now`: any clock [s].
+
+        0 once transitions and interactions are there, and only the results are to come.
+        """
         left = 0.0
         if state.phase == FINISHED:
             pass  # perhaps with fewer transitions than asked for
@@ -31,5 +46,15 @@ class TimeLeft:
         elif state.generates and not state.target:
             return None
         if state.interactions < state.budget:
-            left += (state.budget - state.interactions) / (state.rate or _USUAL_RATE)
-        return left
+            left += (state.budget - state.interactions) / (state.rate or self._usual_rate)
+        return left and left + _RESULTS
+
+
+def words(seconds: float | None, state: RunState) -> str:
+    """Returns the time left of class TimeLeft in words; "" if it is not known."""
+    if seconds is None:
+        return ""
+    if not seconds:
+        return "results to come"
+    is_guess = state.interactions < state.budget and not state.rate
+    return f"{'about' if is_guess else 'at most'} {duration(seconds)} left"
