@@ -129,6 +129,19 @@ def test_of_learning_coverage_comes_first_then_the_ranks_then_the_budget() -> No
     assert "train.interactions, 350,000 now" in said(**failed)
 
 
+def test_more_gradient_steps_are_advised_only_where_there_are_few() -> None:
+    few = said(success_rate=0.4)
+    assert few == (
+        "bottleneck: learning: success 0.40 at the end of the budget; try more gradient steps "
+        "(train.gradient_steps, 1 now) or more interactions (train.interactions, 350,000 now)"
+    )
+    many = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["train.gradient_steps=4"])
+    assert bottleneck(many, {**GOOD, "success_rate": 0.4}, NODES) == (
+        "bottleneck: learning: success 0.40 at the end of the budget; try more interactions "
+        "(train.interactions, 350,000 now)"
+    )
+
+
 def test_of_own_data_other_data_are_advised_and_no_settings_of_a_search() -> None:
     data = {"transitions": 60_000, "successes": 500}
     own = {"data": data, "trees": None, "headings_per_state": 1.2, "success_rate": 0.4}

@@ -17,6 +17,7 @@ _WELL = 0.9  # success rate that needs no explanation
 _SOLVED = 0.5  # least share of reverse solves
 _COVERED = 0.005  # least share of transitions that begin in the start region
 _RANKED = 0.5  # least rank correlation of Q with the simulator
+_MANY_STEPS = 4  # gradient steps of a round, beyond which more are not advised
 _THERE = 0.4  # distance at which an object is in its place, in the unit of poses
 _STILL = 0.05  # spread of places of an object that is in one place, in the unit of poses
 
@@ -159,12 +160,11 @@ def _learning(config: _core.Config, summary: dict[str, Any]) -> str | None:
             f"learning: Q ranks the headings of a state little better than by chance "
             f"({ranked:.2f}); try {headings}, more interactions (train.interactions)"
         )
-    return (
-        f"learning: success {success:.2f} at the end of the budget; try more gradient steps "
-        f"(train.gradient_steps, {config.train.gradient_steps} now; 4 took Push-T a third of the "
-        f"interactions) or more interactions (train.interactions, "
-        f"{config.train.interactions:,} now)"
-    )
+    train = config.train
+    more = f"more interactions (train.interactions, {train.interactions:,} now)"
+    if train.gradient_steps < _MANY_STEPS:
+        more = f"more gradient steps (train.gradient_steps, {train.gradient_steps} now) or {more}"
+    return f"learning: success {success:.2f} at the end of the budget; try {more}"
 
 
 def bottleneck(
