@@ -1,7 +1,9 @@
 """A policy under variants of its task."""
 
 import json
+import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +25,59 @@ def test_the_variants_are_of_starts_noise_and_physics() -> None:
     fixed = ["as trained", "robot", "objects moved", "objects turned"]
     assert groups("gathering") == [*fixed, *physics]
     assert groups("art_manip") == [*fixed[:3], *physics], "a chain does not turn alone"
-    assert groups("push_t") == ["as trained", *physics], "its starts are everywhere"
+    assert groups("push_t") == [*fixed[:3], *physics], "it starts at any angle already"
+
+
+RANGES = {  # of the first box, the same with all objects up to 0.5 m off, and up to 0.25 rad
+    "{x: [-4, -3], y: [1, 7.8], theta: 0.2}": (
+        {"x": [-4.5, -2.5], "y": [0.8, 8], "theta": [0.2, 0.2]},  # not beyond the arena
+        {"x": [-4, -3], "y": [1, 7.8], "theta": [-0.05, 0.45]},
+    ),
+    "{in: {disc: {centre: [-4, 2], radius: 1}}, theta: [-3, 3]}": (
+        {"in": {"disc": {"centre": [-4, 2], "radius": 1.5}}, "theta": [-3, 3]},
+        {"in": {"disc": {"centre": [-4, 2], "radius": 1}}, "theta": [-3.142, 3.142]},
+    ),
+    "{in: {polygon: [[-5, 1], [-3, 1], [-3, 3], [-5, 4]]}}": (
+        {
+            "in": {"polygon": [[-5.5, 0.5], [-2.5, 0.5], [-2.5, 3.309], [-5.5, 4.809]]},
+            "theta": [-3.142, 3.142],
+        },
+        None,  # it starts at any angle already
+    ),
+}
+
+
+def starts_of(variant: Variant) -> dict[int, Any]:
+    """Returns the starts that a variant has settings of, to 0.001, by body."""
+    found = {}
+    for setting in variant.settings:
+        if match := re.fullmatch(r"task\.bodies\.(\d)\.start=(.*)", setting):
+            start = json.loads(match[2], parse_float=lambda x: round(float(x), 3))
+            found[int(match[1])] = start
+    return found
+
+
+@pytest.mark.parametrize("start", RANGES)
+def test_objects_go_beyond_their_ranges_beside_objects_with_places(
+    start: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "mixed.yaml"
+    file.write_text(FILE.read_text().replace("start: [-3.0, 1.13, 0.2]", f"start: {start}"))
+    found = {v[:2]: v for v in robustness.variants(_core.Config.from_file(file))}
+    moved = found["objects moved", "by up to 0.5 m"]
+    turned = starts_of(found["objects turned", "by up to 0.25 rad"])
+    assert {2, 3} <= turned.keys()
+    assert moved.settings[:2] == ("task.start_jitter=0.5", "train.randomise=false")
+    assert (starts_of(moved), turned.get(1)) == ({1: RANGES[start][0]}, RANGES[start][1])
+    assert reasons(file) == {}
+
+
+def test_a_robot_that_starts_in_a_range_starts_elsewhere_in_the_arena() -> None:
+    config = _core.Config.from_file(paths.CONFIG / "insert.yaml")
+    (robot,) = (v for v in robustness.variants(config) if v.group == "robot")
+    changed = _core.Config.from_file(paths.CONFIG / "insert.yaml", list(robot.settings))
+    y = [changed.task.jittered_start(0.1, 1, k)[0, 1] / changed.task.metre for k in range(50)]
+    assert max(y) > -4.0 + 2.0 and min(y) >= -8.0
 
 
 ONTO = Variant("objects moved", "onto the robot", ("task.bodies.1.start=[0, -5, 0]",))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,6 +21,7 @@ Floats = NDArray[np.float64]
 # Lengths are for a robot of 0.8 m radius, those of others are in proportion.
 _MOVED = (0.1, 0.25, 0.5, 1.0, 2.0)
 _TURNED = (0.25, 0.5, 1.0)  # [rad]
+_FULL_TURN = 2.0 * math.pi - 1e-3  # less, as files round it [rad]
 _NOISE = (0.02, 0.05, 0.1)  # also [rad]
 _FACTORS = (0.5, 0.7, 1.3, 2.0)  # of friction and of masses
 _STRIDES = (0.75, 0.9, 1.1, 1.25)  # factors
@@ -46,43 +48,103 @@ class Row(NamedTuple):
     reason: str | None = None
 
 
+def _around(x: float, spread: float) -> list[float]:
+    return [x - spread, x + spread]
+
+
+def _wider(ends: Sequence[float], by: float, bound: float = math.inf) -> list[float]:
+    """Returns a range with both ends `by` farther out, or as far as `bound` lets both of them.
+
+    The middle stays: that is where bodies that joints connect with this one belong.
+    """
+    low, high = ends
+    spread = max(0.0, min(by, bound - high, bound + low))
+    return [low - spread, high + spread]
+
+
+def _grown(ring: Sequence[Sequence[float]], by: float) -> list[list[float]]:
+    """Moves the edges of a convex, counter-clockwise ring outwards. [V, 2] -> [V, 2]"""
+    corners = np.array(ring)
+    edges = np.roll(corners, -1, axis=0) - corners
+    after = np.stack((edges[:, 1], -edges[:, 0]), axis=1)
+    after /= np.linalg.norm(edges, axis=1)[:, None]
+    sums = after + np.roll(after, 1, axis=0)  # of the normals of the edges at a corner
+    found = corners + 2.0 * by * sums / (sums**2).sum(axis=1)[:, None]
+    return [[float(x), float(y)] for x, y in found]
+
+
+def _moved_range(start: dict[str, Any], by: float, arena: float) -> dict[str, Any]:
+    """Returns the range of a start, wider by `by`; ranges of x and y stay within the arena."""
+    if "in" not in start:
+        return {**start, **{axis: _wider(start[axis], by, arena) for axis in ("x", "y")}}
+    region = start["in"]
+    if disc := region.get("disc"):
+        return {**start, "in": {"disc": {**disc, "radius": disc["radius"] + by}}}
+    return {**start, "in": {"polygon": _grown(region["polygon"], by)}}
+
+
+def _turned_range(start: dict[str, Any], by: float) -> dict[str, Any]:
+    """Returns the range of a start, wider in theta by `by` [rad], or a full turn."""
+    return {**start, "theta": _wider(start["theta"], by, math.pi + sum(start["theta"]) / 2.0)}
+
+
+def _starts(bodies: dict[int, dict[str, Any]]) -> tuple[str, ...]:
+    return tuple(f"task.bodies.{k}.start={json.dumps(start)}" for k, start in bodies.items())
+
+
+def _objects_in_ranges(task: dict[str, Any]) -> dict[int, dict[str, Any]]:
+    """Returns the starts of the objects that are drawn from ranges already, by body."""
+    starts = {k: body["start"] for k, body in enumerate(task["bodies"]) if k > 0}
+    return {k: start for k, start in starts.items() if isinstance(start, dict)}
+
+
+def _moved(task: dict[str, Any], by: float) -> tuple[str, ...]:
+    """Returns settings that move objects by up to `by`: those of fixed places, from there, those
+    of ranges, out of these."""
+    ranges = _objects_in_ranges(task)
+    wider = {k: _moved_range(start, by, task["push"]["arena"]) for k, start in ranges.items()}
+    return (f"task.start_jitter={by}", "train.randomise=false", *_starts(wider))
+
+
 def _turned(task: dict[str, Any], by: float, shift: float) -> tuple[str, ...]:
     """Returns settings that turn each loose object by up to `by` [rad], and move it by `shift`.
 
-    Leaves out objects that a goal term wants to stay: they must not start in ranges.
+    Objects of ranges turn out of these, if they do not start at any angle already. Leaves out
+    objects that a goal term wants to stay: they must not start in ranges.
     """
     jointed = {
         name for joint in task.get("joints", ()) for name in (joint["parent"], joint["child"])
     }
     staying = {term["kind"] for term in task["goal"] if "stays" in term}
-    found = []
+    ranges = _objects_in_ranges(task)
+    found = {
+        k: _turned_range(start, by)
+        for k, start in ranges.items()
+        if np.ptp(start["theta"]) < _FULL_TURN
+    }
     for k, body in enumerate(task["bodies"]):
-        if k == 0 or body["fixed"] or body["name"] in jointed or staying & {body["kind"], "*"}:
+        if k == 0 or k in ranges or body["fixed"]:
+            continue
+        if body["name"] in jointed or staying & {body["kind"], "*"}:
             continue
         x, y, theta = body["start"]
-        ranges = f"x: {_range(x, shift)}, y: {_range(y, shift)}, theta: {_range(theta, by)}"
-        found.append(f"task.bodies.{k}.start={{{ranges}}}")
-    return tuple(found)
+        found[k] = {"x": _around(x, shift), "y": _around(y, shift), "theta": _around(theta, by)}
+    return _starts(found)
 
 
-def _range(x: float, spread: float) -> str:
-    return f"[{x - spread}, {x + spread}]"
+def _anywhere(task: dict[str, Any]) -> Iterator[Variant]:
+    """Yields the variant with the robot anywhere in the arena, if it does not start so already."""
+    whole, start = [-task["push"]["arena"], task["push"]["arena"]], task["bodies"][0]["start"]
+    theta = start[2] if isinstance(start, list) else start["theta"]
+    anywhere = {"x": whole, "y": whole, "theta": theta}
+    if start != anywhere:
+        yield Variant("robot", "anywhere", _starts({0: anywhere}))
 
 
 def _start_variants(task: dict[str, Any], unit: float) -> Iterator[Variant]:
-    arena = task["push"]["arena"]
-    if isinstance(task["bodies"][0]["start"], list):
-        theta = task["bodies"][0]["start"][2]
-        anywhere = f"{{x: [{-arena}, {arena}], y: [{-arena}, {arena}], theta: {theta}}}"
-        yield Variant("robot", "anywhere", (f"task.bodies.0.start={anywhere}",))
-    if not all(isinstance(body["start"], list) for body in task["bodies"][1:]):
-        return  # starts are drawn from ranges already
+    yield from _anywhere(task)
     for by in _MOVED:
-        yield Variant(
-            "objects moved",
-            f"by up to {by * unit:.3g} m",
-            (f"task.start_jitter={by * unit}", "train.randomise=false"),
-        )
+        yield Variant("objects moved", f"by up to {by * unit:.3g} m", _moved(task, by * unit))
     for by in _TURNED:
         if settings := _turned(task, by, _MOVED[0] * unit):
             yield Variant("objects turned", f"by up to {by} rad", settings)
