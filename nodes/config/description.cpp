@@ -225,6 +225,15 @@ std::string task_in_words(const Config& config) {
   return out;
 }
 
+/// Returns the learner's discount, with the setting that it is from and the one that does not hold.
+std::string discount_in_words(const Config& config) {
+  std::string out = print("discount %.4g", config.learner_discount());
+  if (config.train.discount == 0.0) return out + " (the task's, as train.discount is 0)";
+  if (config.train.discount == config.task.discount) return out;
+  return out + print(" (train.discount; task.discount, %.4g, would hold if that were 0)",
+                     config.task.discount);
+}
+
 std::string training_in_words(const Config& config) {
   const TrainConfig& train = config.train;
   if (train.learner == Learner::kPlanning) return "  search forwards from each start\n";
@@ -232,9 +241,9 @@ std::string training_in_words(const Config& config) {
       train.offline ? print("from %d transitions on",
                             std::min(train.transitions_before_learning, config.search.transitions))
                     : "without offline data";
-  return print("  train for %d interactions, preset %s, discount %.4g, %s\n", train.interactions,
+  return print("  train for %d interactions, preset %s, %s, %s\n", train.interactions,
                kTrainPresets[static_cast<std::size_t>(train.preset)].data(),
-               config.learner_discount(), from.c_str());
+               discount_in_words(config).c_str(), from.c_str());
 }
 
 std::string processes_in_words(const RunConfig& run) {

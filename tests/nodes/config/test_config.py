@@ -204,6 +204,14 @@ def test_check_says_what_it_understood(file: Path) -> None:
     assert said == Path(__file__).with_name("understood.txt").read_text()
 
 
+@pytest.mark.parametrize(
+    ("discount", "words"),
+    [("0", "discount 0.8 (the task's, as train.discount is 0), "), ("0.8", "discount 0.8, ")],
+)
+def test_check_says_whose_discount_holds(discount: str, words: str, file: Path) -> None:
+    assert words in _core.Config.from_file(file, [f"train.discount={discount}"]).description
+
+
 def test_check_says_which_objects_start_around_their_places() -> None:
     def said(text: str) -> str:
         return _core.Config.from_text(text, "starts").description
