@@ -162,6 +162,13 @@ std::optional<nb::ndarray<nb::numpy, double>> goal_state(const tasks::Task& task
   return state_array(*poses);
 }
 
+std::string why_no_goal_state(const tasks::Task& task, std::uint64_t seed, std::uint64_t index) {
+  Rng rng(seed, index);
+  tasks::Refusals refusals;
+  if (sample_goal(task, rng, &refusals)) return "";
+  return main_reason(refusals, task.scene);
+}
+
 nb::ndarray<nb::numpy, double> start(const tasks::Task& task, double amplitude, std::uint64_t seed,
                                      std::uint64_t index) {
   if (!(amplitude >= 0.0 && amplitude <= 10.0))
@@ -222,6 +229,10 @@ std::vector<tasks::GoalMark> joint_marks(const tasks::Task& task, const StateArr
   return tasks::joint_marks(task, only_state(states, task.scene.size()));
 }
 
+std::vector<tasks::GoalMark> body_marks(const tasks::Task& task, const StateArray& states) {
+  return tasks::body_marks(task, only_state(states, task.scene.size()));
+}
+
 /// Returns one mean centre per goal term with a mean: that of the bodies to which it applies.
 std::vector<Vector2d> centroids(const tasks::Task& task, const StateArray& states) {
   const Poses poses = only_state(states, task.scene.size());
@@ -260,6 +271,11 @@ void bind_geometry(nb::class_<tasks::Task>& bound) {
 The pin of a revolute joint, both ends of the axis of a prismatic one, none of a fixed one.)")
       .def_prop_ro("goal_marks", &tasks::goal_marks,
                    "The regions and target outlines of the goal, for pictures.")
+      .def("body_marks", &body_marks, nb::arg("states"),
+           R"(Returns the marks of the goal's angles and distances, which go with the bodies.
+
+Sectors of the directions that a body's x axis may have, and outlines grown by a gap. `states`: a
+single state, [1, bodies, 3].)")
       .def("joint_marks", &joint_marks, nb::arg("states"),
            R"(Returns where the children of joints lie at the values that the goal allows.
 
@@ -337,6 +353,8 @@ Entry k depends only on state k, `seed` and k. [N, bodies, 3] -> [N])")
            R"(Samples a state in which the goal holds and the bodies are nearly at rest. [bodies, 3]
 
 It is sample `index` of random stream `seed`. Returns None if 1,000 attempts fail.)")
+      .def("why_no_goal_state", &why_no_goal_state, nb::arg("seed"), nb::arg("index") = 0,
+           "Returns what failed most often, in words, if goal_state() returns None; else \"\".")
       .def("succeeded", &successes, nb::arg("states"),
            "Returns whether the goal holds in each state. [N, bodies, 3] -> [N]")
       .def("is_legal", &legal_states, nb::arg("states"),

@@ -271,5 +271,47 @@ TEST(GoalMarks, AreRegionsAndTargetOutlines) {
   EXPECT_NEAR((marks[1].ring[0] - task.start[2].position()).norm(), 0.3, 1e-12);
 }
 
+TEST(GoalMarks, OfAPoseAreEachShapeOfTheKindAndTheTolerances) {
+  Task task = letter_and_box();
+  task.scene.bodies[2].kind = "t";
+  task.scene.bodies[3] = task.scene.bodies[1];  // a shape that is there already
+  task.goal = {{"t", PoseNear{{1, 2, 0.5}, 0.2, 0.1}}};
+  const std::vector<GoalMark> marks = goal_marks(task);
+  ASSERT_EQ(marks.size(), 5u);
+  EXPECT_TRUE(marks[0].target && !marks[1].target && marks[2].target && !marks[4].target);
+  EXPECT_EQ(marks[0].ring.size(), 8u);
+  EXPECT_EQ(marks[2].ring.size(), 4u);
+  const Vector2d first = marks[1].ring[1] - Vector2d(1, 2), last = marks[1].ring.back();
+  EXPECT_NEAR(std::atan2(first.y(), first.x()), 0.4, 1e-12);
+  EXPECT_NEAR(std::atan2(last.y() - 2, last.x() - 1), 0.6, 1e-12);
+  EXPECT_NEAR((marks[4].ring[0] - Vector2d(1, 2)).norm(), 0.2, 1e-12);
+}
+
+TEST(BodyMarks, OfAnAngleAreItsDirectionsUpToTheBodysSymmetry) {
+  Task task = letter_and_box();
+  task.goal = {{"box", AngleIn{-0.1, 0.1}}, {"t", AngleIn{-0.1, 0.1}, true}};
+  Poses poses = task.start;
+  poses[1].theta = poses[2].theta = 3.0;  // the box looks alike after half a turn, the T does not
+  const std::vector<GoalMark> marks = body_marks(task, poses);
+  ASSERT_EQ(marks.size(), 2u);
+  const auto middle = [&](std::size_t mark, std::size_t body) -> Vector2d {
+    return marks[mark].ring[marks[mark].ring.size() / 2] - poses[body].position();
+  };
+  EXPECT_LT(middle(0, 2).x(), -1.05 * task.scene.bodies[2].shape.radius());
+  EXPECT_GT(middle(1, 1).x(), 1.05 * task.scene.bodies[1].shape.radius());
+  EXPECT_TRUE(!marks[0].negated && marks[1].negated);
+}
+
+TEST(BodyMarks, OfDistancesAreTheOtherBodiesGrownByTheGap) {
+  Task task = letter_and_box();
+  task.goal = {{"t", Touches{"wall", 0.25}}, {"t", KeepsFrom{"*", 0.5}}};
+  const std::vector<GoalMark> marks = body_marks(task, task.start);
+  ASSERT_EQ(marks.size(), 3u) << "the wall, then the two objects";
+  double left = INFINITY;
+  for (const Vector2d& v : marks[0].ring) left = std::min(left, v.x());
+  EXPECT_NEAR(left, 7.0 - 0.25 - 0.25, 1e-9) << "half the wall's width, and the gap";
+  EXPECT_TRUE(!marks[0].negated && marks[1].negated && marks[2].negated);
+}
+
 }  // namespace
 }  // namespace rtg::tasks
