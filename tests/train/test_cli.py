@@ -49,7 +49,7 @@ MISTAKES = {
     ),
     "picture of no known format": (
         ["check", "gathering", "--picture", "a.b"],
-        "--picture: a.b: has no known ending; legal: .png, .jpg, .pdf, .gif",
+        "--picture: a.b: has no known ending; legal: .png, .jpg, .pdf, .svg, .gif",
     ),
     "picture in no folder": (
         ["check", "gathering", "--picture", "/none/a.png"],

@@ -122,7 +122,7 @@ def _plot(words: Sequence[str]) -> int:
         "--format",
         choices=("png", "svg", "pdf"),
         default="png",
-        help="of plots; episodes stay images",
+        help="of pictures; films stay GIF",
     )
     args = parser.parse_args(words)
     if args.out == "":

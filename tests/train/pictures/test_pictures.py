@@ -1,5 +1,7 @@
 """Checks what is drawn, and where."""
 
+import itertools
+import math
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -7,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from rtg import _core, paths
-from rtg.pictures import plots
+from rtg.pictures import plots, task_picture
 from rtg.pictures.draw import (
     FAINT,
     GOAL,
@@ -24,7 +26,7 @@ from rtg.pictures.draw import (
     outline,
     state_image,
 )
-from rtg.pictures.episode_pictures import film, interpolate, strip
+from rtg.pictures.episode_pictures import film, interpolate, key, strip
 
 TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
 START = TASK.start[None]
@@ -78,7 +80,7 @@ def test_a_disc_on_a_half_plane_is_seen_in_any_order():
     goal += "{kind: '*', half_plane: {normal: [-1, 0], offset: 0}}]"
     marks = _core.Config.from_file(paths.CONFIG / "gathering.yaml", [goal]).task.goal_marks
     names = ("kinds", "names", "fixed", "outlines", "joints", "start", "arena")
-    names += ("joints_reached", "joint_marks", "centroids")
+    names += ("joints_reached", "joint_marks", "body_marks", "centroids")
     shown = {name: getattr(TASK, name) for name in names}
     pictures = [
         state_image(SimpleNamespace(**shown, goal_marks=goal), SOLVED[None])
@@ -181,16 +183,16 @@ def test_a_strip_has_ten_states_at_most_the_first_and_the_last_among_them(tmp_pa
         with Image.open(file) as picture:
             width, height = picture.size
             assert width == 302 * columns - 2
-            assert 302 * rows - 2 < height < 302 * rows + 40  # with a line of words above
+            assert 302 * rows + 40 < height < 302 * rows + 60  # words above, the key below
             if columns > 1:
-                assert picture.getpixel((300, height - 10)) == FAINT  # between two tiles
+                assert picture.getpixel((300, height - 40)) == FAINT  # between two tiles
 
 
 @pytest.mark.parametrize("letters", [10, 40])
 def test_the_title_of_an_episode_stands_above_it_and_fits(tmp_path, letters):
     strip(tmp_path / "strip.png", TASK, START, success=False, title="m" * letters)
     with Image.open(tmp_path / "strip.png") as picture:
-        band = np.asarray(picture)[: picture.height - 300]
+        band = np.asarray(picture)[:27]
     inked = np.flatnonzero((band != PAPER).any(axis=(0, 2)))
     assert inked[0] < 12 and 100 < inked[-1] < 296
 
@@ -202,7 +204,7 @@ def test_a_film_shows_every_push_and_rests_at_both_ends(tmp_path, steps, frames)
     film(tmp_path / "film.gif", TASK, path, success=True, title="an episode")
     with Image.open(tmp_path / "film.gif") as picture:
         assert picture.n_frames == frames
-        assert picture.width == 360 < picture.height  # with a line of words above
+        assert picture.width == 360 < picture.height - 40  # words above, the key below
         rests = []
         for frame in (0, 1, frames - 1):
             picture.seek(frame)
@@ -299,12 +301,92 @@ def test_the_legend_of_the_curves_covers_none_of_them(figures):
     assert not any(legend.overlaps(axis.get_window_extent()) for axis in figure.axes)
 
 
-def test_a_kind_with_the_name_of_a_colour_has_it():
-    kinds = [f"task.bodies.{k}.kind={kind}" for k, kind in enumerate(("red", "blue", "crate"), 1)]
+def of_kinds(*kinds):
+    """Gathering with its boxes of these kinds."""
+    kinds = [f"task.bodies.{k}.kind={kind}" for k, kind in enumerate(kinds, 1)]
     goal = "task.goal=[{kind: '*', disc: {centre: [0, 0], radius: 2}}]"
-    task = _core.Config.from_file(paths.CONFIG / "gathering.yaml", [*kinds, goal]).task
-    colours = kind_colours(task)
+    return _core.Config.from_file(paths.CONFIG / "gathering.yaml", [*kinds, goal]).task
+
+
+def test_a_kind_with_the_name_of_a_colour_has_it():
+    colours = kind_colours(of_kinds("red", "blue", "crate"))
     red, green, blue = colours["red"]
     assert red > green + 60 and red > blue + 60
     assert colours["blue"][2] > max(colours["blue"][:2]) + 60
     assert colours["crate"] == KIND_PALETTE[0]
+
+
+@pytest.mark.parametrize("kinds", [("orange", "box", "crate"), ("box", "teal", "red")])
+def test_kinds_can_be_told_apart_from_those_with_the_name_of_a_colour(kinds):
+    colours = list(kind_colours(of_kinds(*kinds)).values())
+    for one, other in itertools.combinations(colours, 2):
+        assert math.dist(one, other) > 75.0
+
+
+def test_the_key_has_a_swatch_per_kind_and_fits():
+    for kinds in (("red", "blue", "crate"), ["m" * 39 + k for k in "abc"]):
+        task = of_kinds(*kinds)
+        band = key(task, 300)
+        inked = np.flatnonzero((band != PAPER).any(axis=(0, 2)))
+        assert band.shape[1] == 300 and 60 < inked[-1] < 298
+        for colour in kind_colours(task).values():
+            assert (np.abs(band.astype(int) - colour).sum(axis=2) < 30).sum() >= 4
+    assert band.shape[0] == 3 * len(key(of_kinds("red", "red", "red"), 300)), "a line for each"
+
+
+def test_the_film_has_the_key_below_its_states(tmp_path):
+    task = of_kinds("red", "blue", "crate")
+    film(tmp_path / "film.gif", task, np.repeat(START, 2, axis=0), success=False, title="one")
+    with Image.open(tmp_path / "film.gif") as picture:
+        shown = np.asarray(picture.convert("RGB"))[-20:].astype(int)
+    for colour in kind_colours(task).values():
+        assert (np.abs(shown - colour).sum(axis=2) < 30).any()
+
+
+class NoGoal:
+    """A task whose second goal state cannot be drawn."""
+
+    def __init__(self, task):
+        self._task = task
+
+    def __getattr__(self, name):
+        return getattr(self._task, name)
+
+    def goal_state(self, seed, index):
+        return None if index == 1 else self._task.goal_state(seed, index)
+
+    def why_no_goal_state(self, seed, index):
+        return "task.goal.0 did not hold in 93% of the tries"
+
+
+def test_the_picture_of_a_task_says_which_term_left_a_goal_state_out(tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(task_picture, "write_sheet", lambda *args: drawn.append(args))
+    config = SimpleNamespace(task=NoGoal(TASK), evaluation_jitter=0.1)
+    task_picture.draw(tmp_path / "task.png", config)
+    ((*_, tiles, _, title),) = drawn
+    assert [tile.caption for tile in tiles].count("a goal state") == 3
+    assert title.endswith("; no goal state 2: task.goal.0 did not hold in 93% of the tries")
+    assert TASK.why_no_goal_state(1, 0) == ""
+
+
+def test_sheets_as_pdf_and_svg_are_drawn_by_vectors(tmp_path):
+    config = _core.Config.from_file(paths.CONFIG / "art_manip.yaml")
+    task_picture.draw(tmp_path / "task.pdf", config)
+    assert b"/Subtype /Image" not in (tmp_path / "task.pdf").read_bytes()
+    task_picture.draw(tmp_path / "task.svg", config)
+    text = (tmp_path / "task.svg").read_text()
+    red, green, blue = kind_colours(config.task)["link"]
+    assert f"#{red:02x}{green:02x}{blue:02x}" in text and "<image" not in text
+    assert text.count('id="axes_') == 8
+
+
+def test_angles_and_distances_of_the_goal_are_drawn_around_bodies():
+    task = _core.Config.from_file(paths.CONFIG / "pack.yaml").task
+    picture, window = state_image(task, task.start[None]), arena_window(task)
+    x, y, _ = task.start[1]
+    radius = 0.6 * math.sqrt(2.0)
+    assert pixel(picture, x + 1.3 * radius, y, window) != PAPER, "the angle that is asked for"
+    assert pixel(picture, x, y + 1.3 * radius, window) == PAPER
+    assert pixel(picture, 0.0, 6.95, window) != PAPER, "the band along the wall"
+    assert pixel(picture, 0.0, 6.7, window) == PAPER

@@ -171,5 +171,6 @@ def test_the_pictures_of_a_finished_run_are_drawn_again(tmp_path, learned, capsy
     results.finish(plan_of(tmp_path), {})
     (tmp_path / "stages.png").unlink()
     assert cli.main(["plot", str(tmp_path), "--format", "pdf"]) == 0
-    assert (tmp_path / "stages.pdf").read_bytes().startswith(b"%PDF")
+    for name in ("stages.pdf", "episode.pdf"):
+        assert (tmp_path / name).read_bytes().startswith(b"%PDF")
     assert pictures(tmp_path) == {"episode.png", "episode.gif"}

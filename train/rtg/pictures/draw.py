@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
@@ -28,6 +29,7 @@ KIND_PALETTE: tuple[Colour, ...] = (
     (200, 92, 92),
     (96, 160, 160),
 )
+_DISTINCT = 80.0  # least distance of two colours that are told apart, of levels up to 255
 GREY_LEVEL = 160
 OVERSAMPLING = 3  # pictures are drawn this many times larger, then reduced
 
@@ -74,6 +76,7 @@ class TaskLike(Protocol):
     def metre(self) -> float: ...
     def moved(self, states: Floats, next_states: Floats) -> NDArray[np.bool_]: ...
     def joints_reached(self, states: Floats) -> Sequence[bool]: ...
+    def body_marks(self, states: Floats) -> Sequence[MarkLike]: ...
     def joint_marks(self, states: Floats) -> Sequence[MarkLike]: ...
     def centroids(self, states: Floats) -> Sequence[Floats]: ...
 
@@ -86,16 +89,19 @@ def objects(task: TaskLike) -> list[int]:
 def kind_colours(task: TaskLike) -> dict[str, Colour]:
     """Returns a colour per kind of object; kinds are in order of first appearance.
 
-    A kind with the name of a colour, such as "red", has a mild one of that.
+    A kind with the name of a colour, such as "red", has a mild one of that. The others have those
+    of KIND_PALETTE that can be told from them.
     """
-    colours: dict[str, Colour] = {}
-    palette = itertools.cycle(KIND_PALETTE)
-    for kind in (task.kinds[body] for body in objects(task)):
-        if kind in colours:
-            continue
-        named = ImageColor.colormap.get(kind.lower())
-        colours[kind] = _mild(ImageColor.getrgb(named)) if named else next(palette)
-    return colours
+    kinds = list(dict.fromkeys(task.kinds[body] for body in objects(task)))
+    names = {kind: ImageColor.colormap.get(kind.lower()) for kind in kinds}
+    named = {kind: _mild(ImageColor.getrgb(name)) for kind, name in names.items() if name}
+    distinct = [
+        colour
+        for colour in KIND_PALETTE
+        if all(math.dist(colour, taken) >= _DISTINCT for taken in named.values())
+    ]
+    palette = itertools.cycle(distinct or KIND_PALETTE)
+    return {kind: named[kind] if kind in named else next(palette) for kind in kinds}
 
 
 def _mild(colour: Sequence[int]) -> Colour:
@@ -154,8 +160,26 @@ def episode_window(task: TaskLike, poses: Floats) -> Window:
     return Window(float(x), float(y), 0.53 * float((high - low).max()) + 0.4)
 
 
-class Canvas:
+class Surface(Protocol):
     """A square picture of `window`, with y upwards. Coordinates are in the world frame [m]."""
+
+    window: Window
+
+    def polygon(self, xy: Any, fill: Colour, edge: Colour) -> None:
+        """Draws a filled polygon with an outline."""
+
+    def line(self, xy: Any, colour: Colour, width: float) -> None:
+        """Draws a polyline of `width` [m]."""
+
+    def dot(self, xy: Any, colour: Colour, radius: float) -> None:
+        """Draws a disc of `radius` [m]."""
+
+    def text(self, xy: Any, words: str, size: float) -> None:
+        """Draws `words` with their upper left corner at `xy`. `size`: font size [m]."""
+
+
+class Canvas:
+    """A Surface of pixels."""
 
     def __init__(self, window: Window, pixels: int = 360) -> None:
         self.window = window
@@ -170,22 +194,18 @@ class Canvas:
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
     def polygon(self, xy: Any, fill: Colour, edge: Colour) -> None:
-        """Draws a filled polygon with an outline."""
         ImageDraw.Draw(self._image).polygon(self._points(xy), fill=fill)
         self.line(np.vstack([np.atleast_2d(xy), np.atleast_2d(xy)[:2]]), edge, 0.07)
 
     def line(self, xy: Any, colour: Colour, width: float) -> None:
-        """Draws a polyline of `width` [m]."""
         pixels = max(1, round(width * self._scale))
         ImageDraw.Draw(self._image).line(self._points(xy), fill=colour, width=pixels, joint="curve")
 
     def dot(self, xy: Any, colour: Colour, radius: float) -> None:
-        """Draws a disc of `radius` [m]."""
         (x, y), r = self._points(xy)[0], radius * self._scale
         ImageDraw.Draw(self._image).ellipse((x - r, y - r, x + r, y + r), fill=colour)
 
     def text(self, xy: Any, words: str, size: float) -> None:
-        """Draws `words` with their upper left corner at `xy`. `size`: font size [m]."""
         font = ImageFont.load_default(size=size * self._scale)
         ImageDraw.Draw(self._image).text(self._points(xy)[0], words, fill=INK, font=font)
 
@@ -205,7 +225,7 @@ def mark_colour(task: TaskLike, mark: MarkLike) -> Colour:
 
 
 def draw_goal(
-    canvas: Canvas, task: TaskLike, marks: Sequence[MarkLike], reached: bool = False
+    canvas: Surface, task: TaskLike, marks: Sequence[MarkLike], reached: bool = False
 ) -> None:
     """Draws the marks of a goal, darker if `reached`. Small ones lie on top of large ones."""
     for mark in sorted(marks, key=lambda mark: -_area(mark.ring)):
@@ -213,7 +233,7 @@ def draw_goal(
         canvas.polygon(mark.ring, blend_with_paper(colour, 0.38 if reached else 0.18), edge=colour)
 
 
-def draw_joint_goals(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
+def draw_joint_goals(canvas: Surface, task: TaskLike, poses: Floats) -> None:
     """Draws where the goal asks for the children of joints, as seen from their parents.
 
     The area is that of all values that are allowed, the outlines are at the ends of their range.
@@ -228,7 +248,7 @@ def draw_joint_goals(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
             canvas.line(np.vstack([mark.ring, mark.ring[:2]]), mark_colour(task, mark), 0.07)
 
 
-def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
+def draw_bodies(canvas: Surface, task: TaskLike, poses: Floats) -> None:
     """Draws all bodies: walls first, the robot last and on top. poses [bodies, 3]."""
     colours = kind_colours(task)
 
@@ -247,7 +267,7 @@ def draw_bodies(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
     draw(0, ROBOT)
 
 
-def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
+def draw_joints(canvas: Surface, task: TaskLike, poses: Floats) -> None:
     """Draws pins and axes of joints, and a cross at each mean centre that the goal constrains.
 
     A pin has the colour GOAL if the goal constrains the joint's value and the value complies.
@@ -268,7 +288,7 @@ def draw_joints(canvas: Canvas, task: TaskLike, poses: Floats) -> None:
         canvas.line([(x, y - 0.25), (x, y + 0.25)], INK, 0.09)
 
 
-def draw_former_outlines(canvas: Canvas, task: TaskLike, before: Floats, poses: Floats) -> None:
+def draw_former_outlines(canvas: Surface, task: TaskLike, before: Floats, poses: Floats) -> None:
     """Draws the outlines in state `before` of objects that have moved. [bodies, 3] each
 
     `poses`: the current state.
@@ -280,25 +300,33 @@ def draw_former_outlines(canvas: Canvas, task: TaskLike, before: Floats, poses: 
             canvas.line(np.vstack([xy, xy[:2]]), colours[task.kinds[body]], 0.06)
 
 
-def state_image(
+class Tile(NamedTuple):
+    """A state to be drawn in a sheet of them, see draw_state()."""
+
+    path: Floats  # [T, bodies, 3]
+    caption: str
+    reached: bool = False
+
+
+def draw_state(
+    canvas: Surface,
     task: TaskLike,
     path: Floats,
     *,
-    canvas: Canvas | None = None,
     caption: str = "",
     reached: bool = False,
     marks: Sequence[MarkLike] | None = None,
-) -> NDArray[np.uint8]:
-    """Draws the last state of `path` as an RGB picture [pixels, pixels, 3].
+) -> None:
+    """Draws the last state of `path` [T, bodies, 3].
 
-    The picture also shows the way of the robot along `path` [T, bodies, 3] and the outlines of the
-    objects in its first state. `reached` marks a success. Without `canvas`, the picture shows the
-    whole arena. `marks`: those of the goal; the task's own if None.
+    The picture also shows the way of the robot along `path` and the outlines of the objects in its
+    first state. `reached` marks a success. `marks`: those of the goal; the task's own if None.
     """
-    canvas = canvas or Canvas(arena_window(task))
     path = np.asarray(path, dtype=float)
     a = task.arena
     draw_goal(canvas, task, task.goal_marks if marks is None else marks, reached)
+    if marks is None:
+        draw_goal(canvas, task, task.body_marks(path[-1:]), reached)
     draw_joint_goals(canvas, task, path[-1])
     canvas.line([(-a, -a), (a, -a), (a, a), (-a, a), (-a, -a)], FAINT, 0.06)
     if len(path) > 1:
@@ -308,4 +336,21 @@ def state_image(
     draw_joints(canvas, task, path[-1])
     if caption:
         canvas.text(canvas.window.at(-0.96, 0.96), caption, size=0.09 * canvas.window.half)
+
+
+def state_image(
+    task: TaskLike,
+    path: Floats,
+    *,
+    canvas: Canvas | None = None,
+    caption: str = "",
+    reached: bool = False,
+    marks: Sequence[MarkLike] | None = None,
+) -> NDArray[np.uint8]:
+    """Returns the picture of draw_state() as RGB [pixels, pixels, 3].
+
+    Without `canvas`, it shows the whole arena.
+    """
+    canvas = canvas or Canvas(arena_window(task))
+    draw_state(canvas, task, path, caption=caption, reached=reached, marks=marks)
     return canvas.pixels()

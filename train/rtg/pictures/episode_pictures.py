@@ -15,7 +15,10 @@ from rtg.pictures.draw import (
     PAPER,
     Canvas,
     TaskLike,
+    Tile,
+    Window,
     episode_window,
+    kind_colours,
     state_image,
 )
 
@@ -25,6 +28,7 @@ Picture = NDArray[np.uint8]  # [height, width, 3]
 _COLUMNS = 5  # largest number of columns of a strip
 _FRAMES_PER_PUSH = 8  # largest number; long episodes have fewer
 _FRAMES = 160  # approximate length of a film
+_TILE_SIDE = 300  # of a state in a sheet [pixel]
 _FILM_SIDE = 360  # [pixel]
 _FRAME_MS = 45
 _HOLD_MS = 1200  # at the start; twice as long at the end
@@ -61,6 +65,62 @@ def heading(title: str, width: int) -> Picture:
     return np.asarray(band.reduce(OVERSAMPLING))
 
 
+def key(task: TaskLike, width: int) -> Picture:
+    """Draws a swatch and the name of each kind of object, in lines that fit into `width`.
+
+    [height, width, 3], in pixels; the height is 0 without objects.
+    """
+    colours = kind_colours(task)
+    if not colours:
+        return np.empty((0, width, 3), np.uint8)
+    largest, whole = 14.0 * OVERSAMPLING, width * OVERSAMPLING  # [pixel]
+    font = ImageFont.load_default(size=largest)
+    letters = {kind: font.getlength(kind) / largest + 2.5 for kind in colours}  # 2.5: the swatch
+    size = min(largest, whole / max(letters.values()))
+    places, x, row = [], 0.0, 0
+    for kind, length in letters.items():
+        if x and x + size * length > whole:
+            x, row = 0.0, row + 1
+        places.append((kind, x + 0.5 * size, (1.5 * row + 0.75) * largest))
+        x += size * length
+    band = Image.new("RGB", (whole, round(1.5 * (row + 1) * largest)), PAPER)
+    pen, font = ImageDraw.Draw(band), ImageFont.load_default(size=size)
+    for kind, x, middle in places:
+        corners = (x, middle - 0.4 * size, x + 0.8 * size, middle + 0.4 * size)
+        pen.rectangle(corners, fill=colours[kind], outline=INK, width=OVERSAMPLING)
+        pen.text((x + 1.2 * size, middle), kind, fill=INK, font=font, anchor="lm")
+    return np.asarray(band.reduce(OVERSAMPLING))
+
+
+def write_sheet(
+    path: Path, task: TaskLike, window: Window, tiles: list[Tile], columns: int, title: str
+) -> None:
+    """Writes the tiles row by row, below the title and above the key of kinds.
+
+    PDF and SVG are drawn by vectors. Raises ValueError for a file name of no known ending, OSError
+    if the file cannot be written.
+    """
+    if path.suffix.lower() in (".pdf", ".svg"):
+        from rtg.pictures import vectors  # imports matplotlib
+
+        vectors.write(path, task, window, tiles, columns, title)
+        return
+    pictures = [
+        state_image(
+            task,
+            tile.path,
+            canvas=Canvas(window, _TILE_SIDE),
+            caption=tile.caption,
+            reached=tile.reached,
+        )
+        for tile in tiles
+    ]
+    picture = sheet(pictures, columns)
+    width = picture.shape[1]
+    whole = np.concatenate([heading(title, width), picture, key(task, width)])
+    Image.fromarray(whole).save(path)
+
+
 def strip(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -> None:
     """Writes a picture of up to ten states of an episode, from the first to the last.
 
@@ -68,21 +128,13 @@ def strip(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) 
     """
     last = len(poses) - 1
     shown = np.unique(np.linspace(0, last, min(last + 1, 2 * _COLUMNS)).round().astype(int))
-    window = episode_window(task, poses)
     tiles = []
     for k, step in enumerate(shown):
         earlier = shown[k - 1] if k else 0
-        tiles.append(
-            state_image(
-                task,
-                poses[earlier : step + 1],
-                canvas=Canvas(window, 300),
-                caption="start" if step == 0 else f"{step}",
-                reached=success and step == last,
-            )
-        )
-    picture = sheet(tiles, min(_COLUMNS, len(tiles)))
-    Image.fromarray(np.concatenate([heading(title, picture.shape[1]), picture])).save(path)
+        caption = "start" if step == 0 else f"{step}"
+        tiles.append(Tile(poses[earlier : step + 1], caption, success and step == last))
+    window = episode_window(task, poses)
+    write_sheet(path, task, window, tiles, min(_COLUMNS, len(tiles)), title)
 
 
 def sheet(tiles: list[Picture], columns: int) -> Picture:
@@ -102,7 +154,7 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -
     """Writes an animated GIF of an episode. poses [T+1, bodies, 3]."""
     last = len(poses) - 1
     window = episode_window(task, poses)
-    band = heading(title, _FILM_SIDE)
+    above, below = heading(title, _FILM_SIDE), key(task, _FILM_SIDE)
     frames, durations = [], []
     per_push = min(_FRAMES_PER_PUSH, max(2, _FRAMES // max(1, last)))
 
@@ -111,7 +163,7 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -
         shown[:-1, 1:] = state[1:]  # no outlines of earlier places: the film shows the motion
         canvas = Canvas(window, _FILM_SIDE)
         picture = state_image(task, shown, canvas=canvas, caption=f"{step}", reached=reached)
-        frames.append(Image.fromarray(np.concatenate([band, picture])))
+        frames.append(Image.fromarray(np.concatenate([above, picture, below])))
         durations.append(milliseconds)
 
     add(poses[0], 0, _HOLD_MS)

@@ -68,9 +68,14 @@ def written_as(suffix: str) -> AbstractContextManager[None]:
     return plt.rc_context({"savefig.format": suffix})
 
 
+def renamed(path: Path) -> Path:
+    """Returns `path` with the suffix of written_as()."""
+    return path.with_suffix(f".{plt.rcParams['savefig.format']}")
+
+
 def save(figure: Figure, path: Path) -> None:
-    """Writes the figure to `path`, with the suffix of written_as(), and closes it."""
-    figure.savefig(path.with_suffix(f".{plt.rcParams['savefig.format']}"), dpi=130)
+    """Writes the figure to the file renamed(path), and closes it."""
+    figure.savefig(renamed(path), dpi=130)
     plt.close(figure)
 
 

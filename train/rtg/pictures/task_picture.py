@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-from PIL import Image
-
 from rtg import _core
 from rtg.errors import UserError
-from rtg.pictures.draw import Canvas, arena_window, state_image
-from rtg.pictures.episode_pictures import heading, sheet
+from rtg.pictures.draw import Tile, arena_window
+from rtg.pictures.episode_pictures import write_sheet
 
 _COLUMNS = 4
-_SIDE = 300  # of a state [pixel]
 _SEED = 1
 
 
@@ -23,9 +19,10 @@ def _title(task: _core.Task) -> str:
     )
     if task.joint_marks(task.start[None]):
         words += "; pale: where joints are to stand"
-    kinds = sorted({mark.kind for mark in task.goal_marks if mark.negated})
+    marks = [*task.goal_marks, *task.body_marks(task.start[None])]
+    kinds = sorted({mark.kind for mark in marks if mark.negated})
     avoided = ", ".join("any object" if kind == "*" else f"'{kind}'" for kind in kinds)
-    return f"{words}; red: where {avoided} must not lie" if kinds else words
+    return f"{words}; red: what {avoided} must avoid" if kinds else words
 
 
 def draw(path: Path, config: _core.Config) -> None:
@@ -34,31 +31,22 @@ def draw(path: Path, config: _core.Config) -> None:
     Raises UserError if the file cannot be written or has no known format.
     """
     task = config.task
-    drawn = [task.jittered_start(config.evaluation_jitter, _SEED, k) for k in range(_COLUMNS - 1)]
-    goals = [task.goal_state(_SEED, k) for k in range(_COLUMNS)]
-    captions = ["start", *["a start"] * (_COLUMNS - 1)]
-    tiles = [
-        state_image(task, state[None], canvas=Canvas(arena_window(task), _SIDE), caption=caption)
-        for state, caption in zip([task.start, *drawn], captions, strict=True)
-    ]
-    tiles += [
-        state_image(
-            task,
-            state[None],
-            canvas=Canvas(arena_window(task), _SIDE),
-            caption="a goal state",
-            reached=True,
-        )
-        for state in goals
-        if state is not None
-    ]
-    picture = sheet(tiles, _COLUMNS)
-    title = heading(_title(task), picture.shape[1])
+    jitter = config.evaluation_jitter
+    tiles = [Tile(task.start[None], "start")]
+    for k in range(_COLUMNS - 1):
+        tiles.append(Tile(task.jittered_start(jitter, _SEED, k)[None], "a start"))
+    title = _title(task)
+    for k in range(_COLUMNS):
+        state = task.goal_state(_SEED, k)
+        if state is None:
+            title += f"; no goal state {k + 1}: {task.why_no_goal_state(_SEED, k)}"
+        else:
+            tiles.append(Tile(state[None], "a goal state", reached=True))
     try:
-        Image.fromarray(np.concatenate([title, picture])).save(path)
+        write_sheet(path, task, arena_window(task), tiles, _COLUMNS, title)
     except ValueError:
         raise UserError(
-            f"--picture: {path}: has no known ending; legal: .png, .jpg, .pdf, .gif"
+            f"--picture: {path}: has no known ending; legal: .png, .jpg, .pdf, .svg, .gif"
         ) from None
     except OSError as error:
         raise UserError(

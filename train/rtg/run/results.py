@@ -108,7 +108,8 @@ def _draw_episode(plan: RunPlan) -> None:
     if poses is not None:
         success = bool(task.succeeded(poses[-1:])[0])
         title = episode_title(task.name, len(poses) - 1, success, _origin(plan, poses[0]))
-        episode_pictures.strip(plan.folder / "episode.png", task, poses, success, title)
+        strip = plots.renamed(plan.folder / "episode.png")
+        episode_pictures.strip(strip, task, poses, success, title)
         episode_pictures.film(plan.folder / "episode.gif", task, poses, success, title)
 
 
