@@ -1,9 +1,9 @@
 #include "core/tasks/goal_marks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
+#include "core/math/elementary.hpp"
 #include "core/tasks/symmetry.hpp"
 #include "core/world/outline.hpp"
 
@@ -28,9 +28,8 @@ std::vector<Vector2d> outline_at(const Body& body, const Pose& pose, double gap 
 std::vector<Vector2d> sector(const Body& body, const Vector2d& centre, double least, double most) {
   std::vector<Vector2d> ring{centre};
   for (int k = 0; k <= kArc; ++k) {
-    const double angle = least + (most - least) * k / kArc;
-    ring.push_back(centre +
-                   kSector * body.shape.radius() * Vector2d(std::cos(angle), std::sin(angle)));
+    const Turn<double> turn = turn_of(least + (most - least) * k / kArc);
+    ring.push_back(centre + kSector * body.shape.radius() * Vector2d(turn.c, turn.s));
   }
   return ring;
 }
