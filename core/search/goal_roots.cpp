@@ -38,6 +38,13 @@ Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Pose
   return best;
 }
 
+std::optional<Poses> drawn_goal(const tasks::Task& task, Rng& rng, SearchStats& stats) {
+  std::optional<Poses> goal = sample_goal(task, rng, &stats.goal_refusals);
+  ++stats.goal_draws;
+  stats.undrawn_goals += !goal;
+  return goal;
+}
+
 std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
                               const Poses& target, Rng& rng, SearchStats& stats) {
   const StateMetric metric(task);
@@ -46,8 +53,7 @@ std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& confi
   std::unordered_set<std::uint64_t> seen;
   std::vector<std::pair<double, Poses>> drawn;
   for (int k = 0, failures = 0; k < config.breadth * config.root_draws; ++k) {
-    const std::optional<Poses> goal = sample_goal(turned, rng);
-    stats.undrawn_goals += !goal;
+    const std::optional<Poses> goal = drawn_goal(turned, rng, stats);
     failures = goal ? 0 : failures + 1;
     if (failures == kMaxFailures) break;
     if (!goal) continue;

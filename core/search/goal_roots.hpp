@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/search/search_config.hpp"
@@ -16,6 +17,9 @@ Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Pose
 /// Nodes of a full beam per root. With a root for each, the first layer takes three times as long,
 /// as its objects touch, and Gathering is learned no faster (three seeds).
 inline constexpr int kNodesPerRoot = 4;
+
+/// Draws a goal state by sample_goal() and counts the draw in `stats`.
+std::optional<Poses> drawn_goal(const tasks::Task& task, Rng& rng, SearchStats& stats);
 
 /// Draws goal states and returns up to config.breadth / kNodesPerRoot (rounded up) distinct ones,
 /// the nearest to `target` by start_distance(), with its angle of the robot. Makes at most

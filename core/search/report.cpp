@@ -21,6 +21,8 @@ void set_nodes(GenerationReport& report, const tasks::Task& task, std::vector<Re
     least = least < 0 ? n.depth : std::min(least, n.depth);
   }
   report.nodes = std::move(nodes);
+  if (report.stats.undrawn_goals > 0)
+    report.undrawn_reason = main_reason(report.stats.goal_refusals, task.scene);
 }
 
 namespace {
@@ -74,7 +76,9 @@ std::string to_json(const GenerationReport& r) {
   for (std::size_t k = 0; k < stats.statuses.size(); ++k)
     out[std::string(name(static_cast<reverse::SolveStatus>(k)))] = stats.statuses[k];
   out["illegal_starts"] = stats.illegal_starts;
+  out["goal_draws"] = stats.goal_draws;
   out["undrawn_goals"] = stats.undrawn_goals;
+  out["undrawn_reason"] = r.undrawn_reason;
   out["unsettled_goals"] = stats.unsettled_goals;
   out["replays"] = stats.replays;
   out["rejected_pushes"] = stats.rejected_pushes;

@@ -21,6 +21,7 @@ struct ReportNode {
 struct GenerationReport {
   Coverage::Figures coverage = {};  // of the stored transitions
   SearchStats stats = {};
+  std::string undrawn_reason = {};  // why most of stats.undrawn_goals were; empty without any
   int trees = 0;
   int start_region_depth = -1;   // least depth of a node in_start_region(); -1: none
   long units_given_up = 0;       // job messages whose workers were lost, several times; over LCM
@@ -32,7 +33,8 @@ struct GenerationReport {
   std::vector<std::string> shortfalls = {};  // see set_shortfalls()
 };
 
-/// Writes the nodes, the number of trees and start_region_depth into `report`.
+/// Writes the nodes, the number of trees, start_region_depth and undrawn_reason into `report`, of
+/// which the stats are filled in.
 void set_nodes(GenerationReport& report, const tasks::Task& task, std::vector<ReportNode> nodes);
 
 /// Writes into `report`, a sentence each, what a search that has ended did not find: a step that

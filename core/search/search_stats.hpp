@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/search/seams.hpp"
+#include "core/tasks/refusals.hpp"
 
 namespace rtg::search {
 
@@ -28,12 +29,14 @@ struct SearchStats {
   std::array<long, reverse::kSolveStatusCount> statuses{};  // of them, by SolveStatus
   std::vector<int> iterations;                              // of solves with predecessors
   std::vector<int> pushing_iterations;                      // of those that moved an object
-  long illegal_starts = 0;   // solved starts that are no legal_state()
-  long undrawn_goals = 0;    // failed draws of a goal state
-  long unsettled_goals = 0;  // drawn goals that are no legal goal states once at rest
-  long replays = 0;          // requests to the simulator, kSettle included
-  long rejected_pushes = 0;  // replays that the simulator could not finish
-  std::vector<float> gaps;   // replay gaps of simulated reverse steps [m]
+  long illegal_starts = 0;             // solved starts that are no legal_state()
+  long goal_draws = 0;                 // of goal states
+  long undrawn_goals = 0;              // of them, those that failed
+  tasks::Refusals goal_refusals = {};  // of the tries of all draws
+  long unsettled_goals = 0;            // drawn goals that are no legal goal states once at rest
+  long replays = 0;                    // requests to the simulator, kSettle included
+  long rejected_pushes = 0;            // replays that the simulator could not finish
+  std::vector<float> gaps;             // replay gaps of simulated reverse steps [m]
   std::array<StageTime, std::size(kStages)> times{};  // by Stage
 
   void count(const reverse::ReverseResult& answer, bool moved_object) {

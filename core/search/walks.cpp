@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/search/goal_roots.hpp"
 #include "core/tasks/contact_heading.hpp"
-#include "core/tasks/goal_sampler.hpp"
 
 namespace rtg::search {
 namespace {
@@ -27,7 +27,7 @@ void walk(Generation& run, int number) {
   const int length = from_goals ? kPushesFromGoal : run.task.horizon;
   std::vector<Poses> states;
   for (int k = 0; k < kWave; ++k)
-    if (auto state = from_goals ? sample_goal(run.task, rng) : run.draw_start(rng))
+    if (auto state = from_goals ? drawn_goal(run.task, rng, run.stats) : run.draw_start(rng))
       states.push_back(*std::move(state));
   for (int step = 0; step < length && !states.empty() && !run.data.full(); ++step) {
     std::vector<ReplayJob> pushes;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "core/search/report.hpp"
 #include "core/search/start_distance.hpp"
 #include "core/search/state_metric.hpp"
 #include "tests/support/art_manip.hpp"
@@ -150,6 +151,12 @@ TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
   SearchStats stats;
   EXPECT_TRUE(goal_roots(task, of(20, 4), task.start, rng, stats).empty());
   EXPECT_EQ(stats.undrawn_goals, 20);
+  EXPECT_EQ(stats.goal_draws, 20);
+  GenerationReport report{.stats = stats};
+  set_nodes(report, task, {});
+  EXPECT_EQ(report.undrawn_reason, main_reason(stats.goal_refusals, task.scene));
+  EXPECT_NE(report.undrawn_reason.find("than the clearance in "), std::string::npos)
+      << report.undrawn_reason;
 }
 
 TEST(GoalRoots, OnlyDrawsInVainInARowEndTheDrawing) {
@@ -160,6 +167,7 @@ TEST(GoalRoots, OnlyDrawsInVainInARowEndTheDrawing) {
   SearchStats stats;
   EXPECT_EQ(goal_roots(task, of(15, 4), task.start, rng, stats).size(), 4U);
   EXPECT_GT(stats.undrawn_goals, 20);
+  EXPECT_GT(stats.goal_draws, stats.undrawn_goals);
 }
 
 TEST(GoalRoots, AreDistinctGoalsNearestFirst) {

@@ -21,7 +21,9 @@ GenerationReport filled() {
   for (std::size_t k = 0; k < r.stats.statuses.size(); ++k)
     r.stats.statuses[k] = 10 + static_cast<long>(k);
   r.stats.illegal_starts = 20;
+  r.stats.goal_draws = 27;
   r.stats.undrawn_goals = 25;
+  r.undrawn_reason = "task.goal.0";
   r.stats.unsettled_goals = 21;
   r.stats.rejected_pushes = 22;
   r.stats.replays = 24;
@@ -47,7 +49,8 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
       R"("start_region_depth":5,"trees":3,"candidates":6,)"
       R"("converged":10,"acceptable":11,"pruned":12,"infeasible":13,"iteration_limit":14,)"
       R"("line_search_failed":15,"singular":16,"non_finite":17,)"
-      R"("illegal_starts":20,"undrawn_goals":25,"unsettled_goals":21,"replays":24,"rejected_pushes":22,)"
+      R"("illegal_starts":20,"goal_draws":27,"undrawn_goals":25,)"
+      R"("undrawn_reason":"task.goal.0","unsettled_goals":21,"replays":24,"rejected_pushes":22,)"
       R"("units_given_up":23,"units_from_journal":26,)"
       R"("iterations_median":30.0,"iterations_p90":31.0,"pushing_converged":4,)"
       R"("pushing_iterations_median":34.0,"pushing_iterations_p90":35.0,)"

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rtg import _core, paths
-from rtg.run.diagnosis import bottleneck
+from rtg.run.diagnosis import bottleneck, undrawn_goals
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml")
 GOOD: dict[str, Any] = {
@@ -127,6 +127,19 @@ def test_of_learning_coverage_comes_first_then_the_ranks_then_the_budget() -> No
     assert "coverage: 10 of 60,000" in said(**failed, start_region_transitions=10)
     assert "little better than by chance (0.20)" in said(**failed, q_rank_correlation=0.2)
     assert "train.interactions, 350,000 now" in said(**failed)
+
+
+def test_draws_of_goal_states_in_vain_are_told_with_their_reason_if_they_are_many() -> None:
+    why = "task.goal.1 did not hold in 93% of the tries"
+    draws = {"goal_draws": 600, "undrawn_reason": why}
+    assert undrawn_goals({**draws, "undrawn_goals": 29}) is None
+    assert undrawn_goals({"goal_draws": None, "undrawn_goals": None}) is None  # own data
+    words = undrawn_goals({**draws, "undrawn_goals": 30})
+    assert words is not None
+    assert words.startswith(f"goal states: 30 of 600 draws met no goal: {why}; ")
+    assert f"20 draws met no goal ({why}) and 0 states" in said(
+        trees=0, undrawn_goals=20, undrawn_reason=why
+    )
 
 
 def test_more_gradient_steps_are_advised_only_where_there_are_few() -> None:

@@ -114,6 +114,18 @@ def test_what_falls_short_is_the_last_word_before_the_folder(tmp_path):
     assert "bottleneck" not in results.summary_text(plan, SUMMARY)
 
 
+def test_goal_states_drawn_in_vain_are_told_once(tmp_path):
+    plan = RunPlan(tmp_path, "x", config("run.method=ddqn_rtg"), False, False, ())
+    draws = {"goal_draws": 50, "undrawn_goals": 20, "undrawn_reason": "the robot found no place"}
+    solved = {**SUMMARY, **draws}
+    (tmp_path / "generation.json").write_text(json.dumps({**solved, "nodes": []}))
+    words = "goal states: 20 of 50 draws met no goal: the robot found no place; "
+    assert words in results.summary_text(plan, solved)
+    assert words in results.generation_warning(plan)
+    said = results.summary_text(plan, {**solved, "trees": 0, "success_rate": 0.1})
+    assert said.count("goal states") == 1 and "(the robot found no place)" in said
+
+
 @pytest.mark.parametrize(
     ("interactions", "count", "bar", "words"),
     [
@@ -173,4 +185,4 @@ def test_the_pictures_of_a_finished_run_are_drawn_again(tmp_path, learned, capsy
     assert cli.main(["plot", str(tmp_path), "--format", "pdf"]) == 0
     for name in ("stages.pdf", "episode.pdf"):
         assert (tmp_path / name).read_bytes().startswith(b"%PDF")
-    assert pictures(tmp_path) == {"episode.png", "episode.gif"}
+    assert pictures(tmp_path) == {"episode.gif"}

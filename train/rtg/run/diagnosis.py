@@ -14,6 +14,7 @@ from rtg.pictures.draw import objects
 from rtg.run.effective_config import TREE_GENERATORS
 
 _WELL = 0.9  # success rate that needs no explanation
+_UNDRAWN = 0.05  # share of draws of goal states in vain that is told
 _SOLVED = 0.5  # least share of reverse solves
 _COVERED = 0.005  # least share of transitions that begin in the start region
 _RANKED = 0.5  # least rank correlation of Q with the simulator
@@ -92,6 +93,20 @@ def _search_advice(config: _core.Config, summary: dict[str, Any], deepest: int) 
     )
 
 
+def undrawn_goals(summary: dict[str, Any]) -> str | None:
+    """Returns a sentence on the goal states that were drawn in vain; None if there were few.
+
+    `summary` has the figures of generation.json; with own data, it has none on draws.
+    """
+    failed, draws = summary.get("undrawn_goals") or 0, summary.get("goal_draws") or 0
+    if failed < max(1.0, _UNDRAWN * draws):
+        return None
+    return (
+        f"goal states: {failed:,} of {draws:,} draws met no goal: {summary['undrawn_reason']}; "
+        f"{paths.COMMAND} check FILE.yaml --picture FILE.png draws some"
+    )
+
+
 def of_generation(
     config: _core.Config, summary: dict[str, Any], nodes: Sequence[dict[str, Any]]
 ) -> str | None:
@@ -103,7 +118,8 @@ def of_generation(
         return None
     if not summary["trees"]:
         return (
-            f"goal states: {summary.get('undrawn_goals', 0)} draws met no goal and "
+            f"goal states: {summary.get('undrawn_goals', 0)} draws met no goal"
+            f"{f' ({why})' if (why := summary.get('undrawn_reason')) else ''} and "
             f"{summary.get('unsettled_goals', 0)} states did not come to rest as one; try wider "
             f"tolerances of task.goal, and {paths.COMMAND} check FILE.yaml --picture FILE.png"
         )

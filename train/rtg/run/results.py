@@ -61,6 +61,7 @@ def generation_warning(plan: RunPlan) -> str | None:
             if plan.own_data
             else diagnosis.of_generation(plan.config, report, report["nodes"])
         )
+        found = found or diagnosis.undrawn_goals(report)
     return found and f"these data may not suffice: {found}"
 
 
@@ -211,6 +212,9 @@ def summary_text(plan: RunPlan, summary: dict[str, Any]) -> str:
     lines = [_generation_text(summary)] if generated else []
     lines += _learning_text(plan, summary) if plan.train else []
     nodes = run_folder.read_json(plan.report_file).get("nodes", []) if generated else []
-    if words := diagnosis.bottleneck(plan.config, summary, nodes):
+    found = diagnosis.bottleneck(plan.config, summary, nodes)
+    if (words := diagnosis.undrawn_goals(summary)) and "bottleneck: goal" not in (found or ""):
         lines.append(words)
+    if found:
+        lines.append(found)
     return "\n".join([*lines, f"results: {plan.folder}"])
