@@ -116,7 +116,7 @@ bool is_tip(std::span<const Part> parts, std::size_t n, std::size_t v, double sa
 }
 
 /// Returns the number of points of a union that are farthest from the origin; 0 if they are a whole
-/// circle. Any symmetry maps them onto each other.
+/// circle, which then is the outline. Any symmetry maps them onto each other.
 std::size_t farthest_points(std::span<const Part> parts) {
   double reach = 0.0;
   for (const Part& part : parts) reach = std::max(reach, reach_from(Vector2d::Zero(), part));
@@ -137,6 +137,7 @@ double symmetry_of(const std::vector<Part>& parts) {
   std::size_t most = 0;
   for (const Part& part : parts) most += part.core.size();
   const std::size_t farthest = farthest_points(parts);
+  if (farthest == 0) return 0.0;
   for (std::size_t order = most; order > 1; --order)
     if (farthest % order == 0 && maps_onto_itself(parts, kTwoPi / static_cast<double>(order)))
       return kTwoPi / static_cast<double>(order);

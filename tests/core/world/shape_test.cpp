@@ -113,6 +113,12 @@ TEST(Shape, SymmetryIsTheLeastTurnOntoItself) {
   EXPECT_EQ(Shape(dumbbell).symmetry(), kPi);
 }
 
+TEST(Shape, ADiscThatHoldsAllOtherPartsHasTheSymmetryOfADisc) {
+  EXPECT_EQ(Shape({disc(1), disc(0.5)}).symmetry(), 0.0);
+  EXPECT_EQ(Shape({{box(0.5, 0.5)}, disc(1)}).symmetry(), 0.0);
+  EXPECT_EQ(Shape({disc(1), {box(1.5, 1.5)}}).symmetry(), kPi / 2);
+}
+
 double area(const std::vector<Polygon>& pieces) {
   double sum = 0.0;
   for (const Polygon& piece : pieces) sum += moments(piece).area;
