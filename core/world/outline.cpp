@@ -3,9 +3,11 @@
 #include <geos_c.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -13,12 +15,13 @@
 namespace rtg {
 namespace {
 
-constexpr int kQuadrantSides = 128;    // of a round corner, per quarter turn
-constexpr int kPictureSides = 16;      // the same, in pictures
-constexpr double kSameArea = 2e-4;     // difference of areas that count as one / area
-constexpr double kCollinear = 1e-9;    // sine of the turn at a vertex that is left out
-constexpr double kLeastCorner = 1e-6;  // sine of the turn at a convex corner
-constexpr double kSnap = 1e-7;         // distance at which vertices and edges count as one / reach
+constexpr int kQuadrantSides = 128;            // of a round corner, per quarter turn
+constexpr int kPictureSides = 16;              // the same, in pictures
+constexpr double kSameArea = 2e-4;             // difference of areas that count as one / area
+constexpr double kCollinear = 1e-9;            // sine of the turn at a vertex that is left out
+constexpr double kLeastCorner = 1e-6;          // sine of the turn at a convex corner
+constexpr std::size_t kMaxPieceVertices = 64;  // of disjoint_pieces()
+constexpr double kSnap = 1e-7;  // distance at which vertices and edges count as one / reach
 
 /// GEOS's handle of a thread, with its last error.
 struct Context {
@@ -97,29 +100,41 @@ Geometry union_of(std::span<const Part> parts, int sides = kQuadrantSides) {
   return all;
 }
 
-/// Returns copies of all areas but that of the index `without` as one geometry.
-Geometry collected(std::span<const Geometry> areas, std::size_t without) {
-  std::vector<GEOSGeometry*> copies;
-  for (std::size_t k = 0; k < areas.size(); ++k)
-    if (k != without) copies.push_back(GEOSGeom_clone_r(geos(), areas[k].get()));
-  return checked(GEOSGeom_createCollection_r(geos(), GEOS_GEOMETRYCOLLECTION, copies.data(),
-                                             static_cast<unsigned>(copies.size())));
+/// Returns the ends of all straight edges of the parts; of those within `snap` of each other one.
+std::vector<Vector2d> edge_ends(std::span<const Part> parts, double snap) {
+  std::vector<Vector2d> ends;
+  const auto add = [&](const Vector2d& v) {
+    if (std::ranges::none_of(ends, [&](const Vector2d& w) { return (v - w).norm() <= snap; }))
+      ends.push_back(v);
+  };
+  for (const auto& [core, radius] : parts)
+    for (std::size_t k = 0; core.size() > 1 && k < core.size(); ++k) {
+      const Vector2d out = radius * edge_normal(core, k);
+      add(core.vertices[k] + out);
+      add(core.vertices[(k + 1) % core.size()] + out);
+    }
+  return ends;
+}
+
+Geometry collected(std::vector<Geometry> members) {
+  std::vector<GEOSGeometry*> owned;
+  for (Geometry& member : members) owned.push_back(member.release());
+  return checked(GEOSGeom_createCollection_r(geos(), GEOS_GEOMETRYCOLLECTION, owned.data(),
+                                             static_cast<unsigned>(owned.size())));
 }
 
 /// The union in as many pieces as it has: parts whose edges lie within kSnap of each other hang
-/// together. Each part is snapped to the vertices of those before it, then its edges to all
-/// vertices, so that neighbours have the same ones.
+/// together. For that, the ends of all edges become vertices of the parts on whose outline they
+/// lie, so that neighbours have the same ones.
 Geometry seamless_union_of(std::span<const Part> parts, int sides) {
   const double snap = kSnap * reach_of(parts);
-  std::vector<Geometry> areas;
-  for (const Part& part : parts) {
-    Geometry area = area_of(part, sides);
-    const Geometry before = collected(areas, areas.size());
-    areas.push_back(checked(GEOSSnap_r(geos(), area.get(), before.get(), snap)));
-  }
-  for (std::size_t k = 0; k < areas.size(); ++k)
-    areas[k] = checked(GEOSSnap_r(geos(), areas[k].get(), collected(areas, k).get(), snap));
-  return only_areas(checked(GEOSUnaryUnion_r(geos(), collected(areas, areas.size()).get())));
+  std::vector<Geometry> points, areas;
+  for (const Vector2d& v : edge_ends(parts, snap))
+    points.push_back(checked(GEOSGeom_createPointFromXY_r(geos(), v.x(), v.y())));
+  const Geometry ends = collected(std::move(points));
+  for (const Part& part : parts)
+    areas.push_back(checked(GEOSSnap_r(geos(), area_of(part, sides).get(), ends.get(), snap)));
+  return only_areas(checked(GEOSUnaryUnion_r(geos(), collected(std::move(areas)).get())));
 }
 
 /// Returns the vertices of a ring, without the last, which is the first.
@@ -164,8 +179,9 @@ double turn_at(std::span<const Vector2d> ring, std::size_t k) {
 }
 
 /// Returns the polygon of two that share the edge from vertex i of `a`, which is the edge from
-/// vertex j of `b` reversed. Returns nothing if it is not convex or has too many vertices.
-std::optional<Polygon> joined(const Polygon& a, std::size_t i, const Polygon& b, std::size_t j) {
+/// vertex j of `b` reversed. Returns nothing if it is not convex or has more than `most` vertices.
+std::optional<Polygon> joined(const Polygon& a, std::size_t i, const Polygon& b, std::size_t j,
+                              std::size_t most) {
   std::vector<Vector2d> ring;
   for (std::size_t k = 1; k <= a.size(); ++k) ring.push_back(a.vertices[(i + k) % a.size()]);
   for (std::size_t k = 2; k < b.size(); ++k) ring.push_back(b.vertices[(j + k) % b.size()]);
@@ -176,40 +192,54 @@ std::optional<Polygon> joined(const Polygon& a, std::size_t i, const Polygon& b,
     if (turn < kLeastCorner) return std::nullopt;
     out.vertices.push_back(ring[k]);
   }
-  if (out.size() > kMaxVertices) return std::nullopt;
+  if (out.size() > most) return std::nullopt;
   return out;
 }
 
-/// Joins two pieces at the longest edge at which their union is convex. Returns whether there is
-/// such an edge.
-bool join_longest(std::vector<Polygon>& pieces) {
+/// An edge of a piece, by its ends.
+using Edge = std::array<double, 4>;
+
+Edge edge_of(const Polygon& piece, std::size_t k, bool reversed) {
+  const Vector2d &v = piece.vertices[k], &w = piece.vertices[(k + 1) % piece.size()];
+  if (reversed) return {w.x(), w.y(), v.x(), v.y()};
+  return {v.x(), v.y(), w.x(), w.y()};
+}
+
+/// Joins two pieces at the longest edge at which their union is convex and has at most `most`
+/// vertices; of equally long ones at that of the first pieces. Returns whether there is such an
+/// edge.
+bool join_longest(std::vector<Polygon>& pieces, std::size_t most) {
+  std::map<Edge, std::pair<std::size_t, std::size_t>> places;  // piece and index of an edge
+  for (std::size_t n = 0; n < pieces.size(); ++n)
+    for (std::size_t j = 0; j < pieces[n].size(); ++j)
+      places.emplace(edge_of(pieces[n], j, true), std::pair{n, j});
   double longest = 0.0;
   std::size_t first = 0, second = 0;
   std::optional<Polygon> best;
   for (std::size_t m = 0; m < pieces.size(); ++m)
-    for (std::size_t n = m + 1; n < pieces.size(); ++n)
-      for (std::size_t i = 0; i < pieces[m].size(); ++i)
-        for (std::size_t j = 0; j < pieces[n].size(); ++j) {
-          const Vector2d &v = pieces[m].vertices[i],
-                         &w = pieces[m].vertices[(i + 1) % pieces[m].size()];
-          if (v != pieces[n].vertices[(j + 1) % pieces[n].size()] || w != pieces[n].vertices[j])
-            continue;
-          if ((v - w).norm() <= longest) continue;
-          std::optional<Polygon> one = joined(pieces[m], i, pieces[n], j);
-          if (!one) continue;
-          best = std::move(one);
-          longest = (v - w).norm();
-          first = m;
-          second = n;
-        }
+    for (std::size_t i = 0; i < pieces[m].size(); ++i) {
+      const Edge edge = edge_of(pieces[m], i, false);
+      const auto found = places.find(edge);
+      if (found == places.end() || found->second.first <= m) continue;
+      const auto [n, j] = found->second;
+      const double length = Vector2d(edge[2] - edge[0], edge[3] - edge[1]).norm();
+      if (length < longest || (length == longest && (first != m || second <= n))) continue;
+      std::optional<Polygon> one = joined(pieces[m], i, pieces[n], j, most);
+      if (!one) continue;
+      best = std::move(one);
+      longest = length;
+      first = m;
+      second = n;
+    }
   if (!best) return false;
   pieces[first] = *std::move(best);
   pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(second));
   return true;
 }
 
-/// Splits a polygon into its constrained Delaunay triangles and joins them while that is convex.
-std::vector<Polygon> pieces_of(const GEOSGeometry& polygon) {
+/// Splits a polygon into its constrained Delaunay triangles and joins them while that is convex and
+/// has at most `most` vertices.
+std::vector<Polygon> pieces_of(const GEOSGeometry& polygon, std::size_t most) {
   const Geometry triangles = checked(GEOSConstrainedDelaunayTriangulation_r(geos(), &polygon));
   std::vector<Polygon> pieces;
   for (int n = 0; n < GEOSGetNumGeometries_r(geos(), triangles.get()); ++n) {
@@ -218,7 +248,7 @@ std::vector<Polygon> pieces_of(const GEOSGeometry& polygon) {
     if (area_integrals(one.vertices).area < 0.0) std::ranges::reverse(one.vertices);
     pieces.push_back(std::move(one));
   }
-  while (join_longest(pieces)) {
+  while (join_longest(pieces, most)) {
   }
   return pieces;
 }
@@ -265,14 +295,14 @@ std::optional<std::string> ring_defect(std::span<const Vector2d> ring) {
 }
 
 std::vector<Polygon> disjoint_pieces(std::span<const Part> parts) {
-  if (parts.size() > 1) return pieces_of(*union_of(parts, kPictureSides));
+  if (parts.size() > 1) return pieces_of(*union_of(parts, kPictureSides), kMaxPieceVertices);
   Polygon only{outline(parts)[0]};
   if (area_integrals(only.vertices).area < 0.0) std::ranges::reverse(only.vertices);
   return {std::move(only)};
 }
 
 std::vector<Polygon> convex_pieces(std::span<const Vector2d> ring) {
-  return pieces_of(*polygon_of(ring));
+  return pieces_of(*polygon_of(ring), kMaxVertices);
 }
 
 }  // namespace rtg

@@ -31,8 +31,8 @@ bool maps_onto_itself(std::span<const Part> parts, double angle);
 /// vertices may have either orientation.
 std::optional<std::string> ring_defect(std::span<const Vector2d> ring);
 
-/// Splits the union of `parts` into convex polygons that do not overlap. Round corners have 64
-/// sides per turn.
+/// Splits the union of `parts` into convex polygons of at most 64 vertices that do not overlap; a
+/// single part is one polygon. Round corners have 64 sides per turn.
 std::vector<Polygon> disjoint_pieces(std::span<const Part> parts);
 
 /// Splits the simple polygon `ring` into convex polygons of at most kMaxVertices vertices: its

@@ -41,18 +41,24 @@ const std::string kVerticesLegal =
 
 std::string metres(double length, const Units& units) { return length_text(length, units) + " m"; }
 
-bool is_off_centre(const Shape& shape) {
-  return shape.moments().centroid.norm() > kCentredWithin * (1.0 + shape.radius());
+/// Returns the parts with their centroid at the origin.
+std::vector<Part> centred(std::vector<Part> parts) {
+  // The moments alone: a Shape of many round parts takes a while.
+  const Vector2d centroid =
+      (parts.size() == 1 ? Shape(parts).moments() : union_moments(parts)).centroid;
+  double reach = 0.0;
+  for (const Part& part : parts) reach = std::max(reach, reach_from(Vector2d::Zero(), part));
+  if (centroid.norm() <= kCentredWithin * (1.0 + reach)) return parts;
+  return placed(std::move(parts), 0.0, -centroid);
 }
 
-/// Returns the shape with its numbers rounded, so that its text reads back to the bit.
-Shape on_grid(const Shape& shape, const Units& units) {
-  std::vector<Part> parts = shape.parts();
+/// Returns the parts with their numbers rounded, so that their text reads back to the bit.
+std::vector<Part> on_grid(std::vector<Part> parts, const Units& units) {
   for (Part& part : parts) {
     for (Vector2d& v : part.core.vertices) v = {units.on_grid(v.x()), units.on_grid(v.y())};
     part.radius = units.on_grid(part.radius);
   }
-  return Shape(std::move(parts));
+  return parts;
 }
 
 /// Throws ConfigError if `defect` is one.
@@ -250,10 +256,10 @@ Shape read_shape(const ConfigNode& section, const std::string& path, const Units
     if (const ConfigEntry* margin = find(section, key); margin && compound)
       throw ConfigError(margin->value.origin, reader.path(key), "is given beside parts",
                         "the key in the parts");
-  Shape shape(compound ? read_parts(form.value, reader.path(form.key), units)
-                       : read_simple(reader, form));
-  if (is_off_centre(shape)) shape = shape.centred();
-  if (form.key != "regular" || find(section, "rounding")) shape = on_grid(shape, units);
+  std::vector<Part> parts = centred(compound ? read_parts(form.value, reader.path(form.key), units)
+                                             : read_simple(reader, form));
+  if (form.key != "regular" || find(section, "rounding")) parts = on_grid(std::move(parts), units);
+  Shape shape(std::move(parts));
   if (shape.radius() > kMaxRadius)
     refuse("reaches " + std::to_string(std::lround(shape.radius() * units.length)) +
                " m from its centre",

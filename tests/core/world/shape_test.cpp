@@ -6,6 +6,7 @@
 
 #include "core/math/rng.hpp"
 #include "core/world/outline.hpp"
+#include "core/world/overlap.hpp"
 
 namespace rtg {
 namespace {
@@ -146,6 +147,22 @@ TEST(ConvexPieces, OfABoxWithAVertexOnItsEdgeAreTheBox) {
   const std::vector<Vector2d> ring{{0, 0}, {1, 0}, {2, 0}, {2, 1}, {0, 1}};
   ASSERT_EQ(convex_pieces(ring).size(), 1);
   EXPECT_EQ(convex_pieces(ring)[0].size(), 4);
+}
+
+TEST(DisjointPieces, OfRoundPartsAreFewAndAddUpToTheUnion) {
+  std::vector<Part> star;
+  for (int k = 0; k < 8; ++k)
+    star.push_back(placed({{box(1.0, 0.2), 0.1}}, k * kPi / 4, rotate(k * kPi / 4, {0.7, 0}))[0]);
+  const std::vector<std::pair<std::vector<Part>, std::size_t>> shapes{
+      {letter_t(), 2}, {{{box(3, 0.6), 0.2}, {box(0.6, 3), 0.2}}, 12}, {star, 16}};
+  for (const auto& [parts, most] : shapes) {
+    const std::vector<Polygon> pieces = disjoint_pieces(parts);
+    EXPECT_LE(pieces.size(), most);
+    EXPECT_NEAR(area(pieces), union_moments(parts).area, 2e-3 * area(pieces));
+    for (std::size_t m = 0; m < pieces.size(); ++m)
+      for (std::size_t n = 0; n < m; ++n)
+        EXPECT_LT(common_area(pieces[m].vertices, pieces[n].vertices), 1e-12);
+  }
 }
 
 TEST(RingDefect, TellsWhereARingCrossesItself) {
