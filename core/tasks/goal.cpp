@@ -54,7 +54,8 @@ double excess_of(const PoseNear& c, const Task& task, const Poses& poses, std::s
   return missing > 0.0 ? missing : std::max(way, turn);
 }
 
-/// In units of the bounding radius; where nothing is covered the way to there comes on top.
+/// The missing share times the bounding radius [m]; where nothing is covered the way to there comes
+/// on top.
 double excess_of(const Covers& c, const Task& task, const Poses& poses, std::size_t body) {
   const Shape& shape = task.scene.bodies[body].shape;
   const double share = covered_share(shape, poses[body], c.pose);
