@@ -21,6 +21,8 @@ def merged(reports: Sequence[Report]) -> Report:
     """Returns the report on all transitions. The wall time is that of the slowest generation."""
     found = {key: _sum([report[key] for report in reports]) for key in reports[0]}
     found["shortfalls"] = list(dict.fromkeys(found["shortfalls"]))
+    most = max(reports, key=lambda report: report["undrawn_goals"])
+    found["undrawn_reason"] = most["undrawn_reason"]
     found[_WALL] = max(report[_WALL] for report in reports)
     counts = [report["transitions"] for report in reports]
     for key in _SHARES:
