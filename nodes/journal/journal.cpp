@@ -31,6 +31,10 @@ Word word_at(std::span<const std::uint8_t> bytes) {
   return static_cast<Word>(word);
 }
 
+auto digest_of(std::span<const std::uint8_t> identity, std::span<const std::uint8_t> record) {
+  return files::Sha256().add(identity).add(record).digest();
+}
+
 std::vector<std::uint8_t> bytes_of(std::int64_t word) {
   std::vector<std::uint8_t> bytes;
   append_word(bytes, word);
@@ -62,7 +66,7 @@ void Journal::append(std::int64_t id, std::span<const std::uint8_t> bytes) {
   append_word(record, static_cast<std::uint32_t>(bytes.size()));
   append_word(record, id);
   record.insert(record.end(), bytes.begin(), bytes.end());
-  const auto digest = files::Sha256().add(identity_).add(record).digest();
+  const auto digest = digest_of(identity_, record);
   record.insert(record.end(), digest.begin(), digest.end());
   const std::int64_t place = end_;
   write(record);
@@ -106,8 +110,7 @@ std::optional<Journal::Record> Journal::record_at(std::int64_t place) const {
   bytes.resize(kHeadBytes + size + kDigestBytes);
   if (!read(place, bytes)) return std::nullopt;
   const auto record = std::span(bytes).first(kHeadBytes + size);
-  if (!std::ranges::equal(files::Sha256().add(identity_).add(record).digest(),
-                          std::span(bytes).last(kDigestBytes)))
+  if (!std::ranges::equal(digest_of(identity_, record), std::span(bytes).last(kDigestBytes)))
     return std::nullopt;
   const auto id = word_at<std::int64_t>(std::span(bytes).subspan(4));
   return Record{id, {record.begin() + kHeadBytes, record.end()}};

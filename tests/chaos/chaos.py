@@ -16,7 +16,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -85,13 +85,14 @@ class Chaos:
 
     def kills(self) -> None:
         """Kills of workers and server, about one in a second."""
-        self._kill("kills", lambda run: run.names()[:-1], 2 if self._smoke else 100)
+        others = [name for name in generation.PROGRAMS if name != generation.COORDINATOR]
+        self._kill("kills", others, 2 if self._smoke else 100)
 
     def coordinators(self) -> None:
         """Kills of the coordinator, which goes on from its journal."""
-        self._kill("coordinators", lambda run: run.names()[-1:], 2 if self._smoke else 10)
+        self._kill("coordinators", [generation.COORDINATOR], 2 if self._smoke else 10)
 
-    def _kill(self, name: str, victims: Callable[[Generation], list[str]], most: int) -> None:
+    def _kill(self, name: str, victims: Sequence[str], most: int) -> None:
         done, ends, rng = 0, [], random.Random(1)
 
         def strike(run: Generation) -> None:
@@ -99,7 +100,7 @@ class Chaos:
             while done < most and run.is_running():
                 time.sleep(rng.uniform(0.5, 1.5))
                 if run.is_running():
-                    run.kill(rng.choice(victims(run)))
+                    run.kill(rng.choice(victims))
                     done += 1
 
         while done < most:
@@ -119,7 +120,7 @@ class Chaos:
 
                 threads = [
                     threading.Thread(target=later, args=(name, rng.uniform(0.3, 2 * seconds)))
-                    for name in [*run.names(), "consumer"]
+                    for name in [*generation.PROGRAMS, generation.CONSUMER]
                 ]
                 for thread in threads:
                     thread.start()

@@ -14,7 +14,9 @@ from graph import Graph, generated_in_process, lost
 from network import Network
 
 SETTINGS = ("search.transitions=12000", "run.seed=3")
-WORKERS = 2
+WORKERS = ("worker 0", "worker 1")
+COORDINATOR, CONSUMER = "coordinator", "consumer"
+PROGRAMS = ("server", *WORKERS, COORDINATOR)  # those that may be killed: they keep no rows
 
 
 class End(NamedTuple):
@@ -32,8 +34,8 @@ class Generation:
         self.graph = Graph(network, folder, *SETTINGS)
         self._start: dict[str, Callable[[], subprocess.Popen[str]]] = {
             "server": self.graph.server,
-            **{f"worker {k}": lambda k=k: self.graph.worker(k) for k in range(WORKERS)},
-            "coordinator": self.graph.coordinator,
+            **{name: lambda k=k: self.graph.worker(k) for k, name in enumerate(WORKERS)},
+            COORDINATOR: self.graph.coordinator,
         }
         self._begun = time.monotonic()
         self._consumer = self.graph.consumer()
@@ -42,10 +44,6 @@ class Generation:
     def is_running(self) -> bool:
         return self.graph.is_generating()
 
-    def names(self) -> list[str]:
-        """Returns the names of all programs but the consumer, which keeps what it has in memory."""
-        return list(self._programs)
-
     def kill(self, name: str) -> None:
         """Kills a program and starts it again."""
         self._programs[name].kill()
@@ -53,8 +51,8 @@ class Generation:
         self._programs[name] = self._start[name]()
 
     def pause(self, name: str, seconds: float) -> None:
-        """Freezes a program, or the "consumer", for so long."""
-        program = {**self._programs, "consumer": self._consumer}[name]
+        """Freezes a program, or the consumer, for so long."""
+        program = {**self._programs, CONSUMER: self._consumer}[name]
         program.send_signal(signal.SIGSTOP)
         time.sleep(seconds)
         program.send_signal(signal.SIGCONT)
@@ -63,7 +61,7 @@ class Generation:
         """Waits for the end. Raises SystemExit if a program failed or units were given up."""
         rows_lost = lost(self._consumer)
         taken = time.monotonic() - self._begun
-        status = self._programs["coordinator"].wait(60)
+        status = self._programs[COORDINATOR].wait(60)
         if status != 0:
             raise SystemExit(f"the coordinator ended with status {status}: units were given up")
         return End(taken, rows_lost, self.graph.transitions())

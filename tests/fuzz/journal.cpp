@@ -5,9 +5,9 @@
 
 #include "nodes/files/regular_file.hpp"
 #include "nodes/jobs/unit_journal.hpp"
+#include "tests/fuzz/reverse_results.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 #include "tests/fuzz/target.hpp"
-#include "tests/nodes/bus/filled_message.hpp"
 
 namespace rtg::fuzz {
 namespace {
@@ -85,14 +85,7 @@ void append_record(Bytes& out, const Bytes& record) {
 }
 
 Bytes solutions() {
-  reverse::ReverseSolution solution;
-  solution.trajectory.assign(3, Poses(2));
-  solution.controls.assign(2, Vector3d(1.0, 2.0, 3.0));
-  solution.contacts.push_back({1, 0, 1, {0.0, 1.0}, {1.0, 0.0}, 2.0});
-  std::vector<reverse::ReverseResult> results(3);
-  for (auto& result : results) result.predecessors = {Poses(2), Poses(2)};
-  results[1].solution = solution;
-  auto message = jobs::ReverseService::message(results);
+  auto message = jobs::ReverseService::message(reverse_results());
   return bus::encode(message);
 }
 

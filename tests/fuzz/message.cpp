@@ -8,6 +8,7 @@
 #include "nodes/beam_coordinator/job_pool.hpp"
 #include "nodes/beam_coordinator/transition_publisher.hpp"
 #include "nodes/jobs/worker_node.hpp"
+#include "tests/fuzz/reverse_results.hpp"
 #include "tests/fuzz/sealed.hpp"
 #include "tests/fuzz/target.hpp"
 #include "tests/nodes/bus/filled_message.hpp"
@@ -170,15 +171,9 @@ Bytes work() {
 }
 
 Bytes answers() {
-  reverse::ReverseSolution solution;
-  solution.trajectory.assign(3, Poses(2));
-  solution.controls.assign(2, Vector3d(1.0, 2.0, 3.0));
-  solution.contacts.push_back({1, 0, 1, {0.0, 1.0}, {1.0, 0.0}, 2.0});
-  std::vector<reverse::ReverseResult> solved(3);
-  for (auto& result : solved) result.predecessors = {Poses(2), Poses(2)};
-  solved[1].solution = solution;
   Bytes out;
-  append_work<ReverseService, reverse::ReverseResult>(out, ReverseService::kResults, solved);
+  append_work<ReverseService, reverse::ReverseResult>(out, ReverseService::kResults,
+                                                      reverse_results());
   append_work<ReplayService, search::ReplayResult>(out, ReplayService::kResults,
                                                    {{Poses(2), true, 0.1}, {Poses(2), false}});
   return out;

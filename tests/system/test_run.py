@@ -20,6 +20,7 @@ TINY = "config/tests/tiny.yaml"
 WHOLE = (TINY,)
 NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
 ENDLESS = (TINY, "--transitions", "20000000", "--set", "train.buffer=20000000")
+LONG = (TINY, "--no-train", "--transitions", "20000", "--workers", "1")
 PATIENCE = 300.0  # [s]; longer is a hang
 COMMON_FILES = {
     "config.yaml",
@@ -210,42 +211,40 @@ def test_killing_the_command_kills_all_of_its_processes(tmp_path):
     wait_until_all_are_gone(folder, PATIENCE)
 
 
-def test_a_killed_worker_is_replaced_and_changes_nothing(tmp_path):
-    words = (TINY, "--no-train", "--transitions", "20000", "--workers", "1")
-    assert run(*words, "--in-process", "--out", tmp_path / "undisturbed").returncode == 0
-    folder = tmp_path / "disturbed"
-    process = start(*words, "--out", folder)
-    wait_for_line(process, "tree ")
-    kill(folder, "rtg_reverse_worker")
-    out, err = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 0, err
-    assert "reverse_worker_0 was killed by SIGKILL, started again" in out
-    assert json.loads((folder / "summary.json").read_text())["worker_restarts"] == 1
-    undisturbed = tmp_path / "undisturbed" / "transitions.npz"
-    assert (folder / "transitions.npz").read_bytes() == undisturbed.read_bytes()
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    """Returns the transitions of LONG."""
+    folder = tmp_path_factory.mktemp("run") / "undisturbed"
+    assert run(*LONG, "--in-process", "--out", folder).returncode == 0
+    return (folder / "transitions.npz").read_bytes()
 
 
-def test_a_killed_coordinator_goes_on_and_changes_nothing(tmp_path):
-    words = (TINY, "--no-train", "--transitions", "20000", "--workers", "1")
-    assert run(*words, "--in-process", "--out", tmp_path / "undisturbed").returncode == 0
+@pytest.mark.parametrize(
+    ("program", "name", "key", "counts"),
+    [
+        ("rtg_reverse_worker", "reverse_worker_0", "worker_restarts", lambda count: count == 1),
+        ("rtg_beam_coordinator", "beam_coordinator", "units_from_journal", lambda count: count > 0),
+    ],
+    ids=["worker", "coordinator"],
+)
+def test_a_killed_program_is_started_again_and_changes_nothing(
+    tmp_path, undisturbed, program, name, key, counts
+):
     folder = tmp_path / "disturbed"
-    process = start(*words, "--out", folder)
+    process = start(*LONG, "--out", folder)
     wait_for_line(process, "tree ")
-    kill(folder, "rtg_beam_coordinator")
+    kill(folder, program)
     out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, err
-    assert "beam_coordinator was killed by SIGKILL, started again" in out
-    assert json.loads((folder / "summary.json").read_text())["units_from_journal"] > 0
-    undisturbed = tmp_path / "undisturbed" / "transitions.npz"
-    assert (folder / "transitions.npz").read_bytes() == undisturbed.read_bytes()
+    assert f"{name} was killed by SIGKILL, started again" in out
+    assert counts(json.loads((folder / "summary.json").read_text())[key])
+    assert (folder / "transitions.npz").read_bytes() == undisturbed
 
 
 @pytest.mark.parametrize("mode", [(), ("--in-process",)], ids=["over_lcm", "in_process"])
-def test_a_generation_killed_with_its_command_goes_on(tmp_path, mode):
-    words = (TINY, "--no-train", "--transitions", "20000", "--workers", "1")
-    assert run(*words, "--in-process", "--out", tmp_path / "undisturbed").returncode == 0
+def test_a_generation_killed_with_its_command_goes_on(tmp_path, undisturbed, mode):
     folder = tmp_path / "disturbed"
-    process = start(*words, *mode, "--out", folder)
+    process = start(*LONG, *mode, "--out", folder)
     wait_for_line(process, "tree ")
     for pid in processes_of(folder):
         os.kill(pid, signal.SIGKILL)
@@ -254,8 +253,7 @@ def test_a_generation_killed_with_its_command_goes_on(tmp_path, mode):
     done = run("--resume", "--no-train", "--out", folder)
     assert done.returncode == 0, done.stderr
     assert json.loads((folder / "summary.json").read_text())["units_from_journal"] > 0
-    undisturbed = tmp_path / "undisturbed" / "transitions.npz"
-    assert (folder / "transitions.npz").read_bytes() == undisturbed.read_bytes()
+    assert (folder / "transitions.npz").read_bytes() == undisturbed
     assert not (folder / "generation.journal").exists()
 
 

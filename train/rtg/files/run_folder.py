@@ -62,6 +62,7 @@ _LEFT_OUT = ("iterations", "pushing_iterations", "replay_gaps", "nodes", "shortf
 
 _SEAL = "sha256"  # the last member of a JSON object: see write_json()
 _DIGITS = 64
+_CONFIG_SEAL = "# SHA-256 of the lines above: "  # and the digits: the last line of config.yaml
 
 
 @contextlib.contextmanager
@@ -123,9 +124,6 @@ def config_file(run: Path) -> Path:
 # The answers of the simulators to a generation that has not ended, from which --resume goes on.
 JOURNAL_FILE = "generation.journal"
 KEY_FILE = "run.key"  # the secret with which the processes of a run authenticate their messages
-
-
-_CONFIG_SEAL = "# SHA-256 of the lines above: "
 
 
 def write_run_name(run: Path, name: str) -> None:
