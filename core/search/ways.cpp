@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBeyond = 1e-3;  // distance of corners from the obstacle [m]
-constexpr double kGraze = 1e-6;   // depth up to which a way may enter an obstacle [m]
+constexpr double kGraze = 1e-6;   // depth up to which any way may enter an obstacle [m]
 constexpr int kDiscSides = 8;     // of the polygon around a widened disc
 constexpr int kDirections = 90;   // in which a width is measured
 
@@ -25,28 +25,28 @@ Polygon widened(const Part& part, const Pose& pose, double by) {
   return out;
 }
 
-/// Returns the share of the segment from a to b that lies deeper than kGraze in the polygon, by the
-/// clipping of [Cyrus and Beck 1978].
-double share_inside(const Polygon& polygon, const Vector2d& a, const Vector2d& b) {
-  double enters = 0.0, leaves = 1.0;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vector2d &v = polygon.vertices[k], normal = edge_normal(polygon, k);
-    const double from = normal.dot(a - v) + kGraze, to = normal.dot(b - v) + kGraze;
-    if (from >= 0.0 && to >= 0.0) return 0.0;
-    const double at = from / (from - to);
-    if (from > 0.0) enters = std::max(enters, at);
-    if (to > 0.0) leaves = std::min(leaves, at);
-  }
-  return std::max(0.0, leaves - enters);
+/// Returns how deep x lies in the polygon, the distance from its nearest line [m]; negative
+/// outside.
+double depth(const Polygon& polygon, const Vector2d& x) {
+  double least = kInfinity;
+  for (std::size_t k = 0; k < polygon.size(); ++k)
+    least = std::min(least, edge_normal(polygon, k).dot(polygon.vertices[k] - x));
+  return least;
 }
 
-bool is_within(const Polygon& polygon, const Vector2d& x) {
+/// Returns whether a point of the segment from a to b lies deeper than `free` [m] in the polygon,
+/// by the clipping of [Cyrus and Beck 1978].
+bool enters(const Polygon& polygon, const Vector2d& a, const Vector2d& b, double free) {
+  double first = 0.0, last = 1.0;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vector2d& v = polygon.vertices[k];
-    const Vector2d edge = polygon.vertices[(k + 1) % polygon.size()] - v;
-    if (edge.y() * (x - v).x() - edge.x() * (x - v).y() >= 0.0) return false;
+    const Vector2d &v = polygon.vertices[k], normal = edge_normal(polygon, k);
+    const double from = normal.dot(a - v) + free, to = normal.dot(b - v) + free;
+    if (from >= 0.0 && to >= 0.0) return false;
+    const double at = from / (from - to);
+    if (from > 0.0) first = std::max(first, at);
+    if (to > 0.0) last = std::min(last, at);
   }
-  return true;
+  return first < last;
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ Ways::Ways(const Scene& scene, const Poses& poses, const std::vector<std::size_t
   }
   for (const Vector2d& x : found)
     if (x.cwiseAbs().maxCoeff() <= arena &&
-        std::ranges::none_of(obstacles_, [&](const Polygon& o) { return is_within(o, x); }))
+        std::ranges::none_of(obstacles_, [&](const Polygon& o) { return depth(o, x) > 0.0; }))
       corners_.push_back(x);
   const auto count = static_cast<Eigen::Index>(corners_.size());
   lengths_ = MatrixXd::Constant(count, count, kInfinity);
@@ -80,10 +80,10 @@ Ways::Ways(const Scene& scene, const Poses& poses, const std::vector<std::size_t
         lengths_(i, j) = std::min(lengths_(i, j), lengths_(i, k) + lengths_(k, j));
 }
 
-/// Obstacles that hold an end of the way do not count.
+/// A way enters an obstacle no deeper than its ends lie in it.
 bool Ways::is_free(const Vector2d& a, const Vector2d& b) const {
-  return std::ranges::all_of(obstacles_, [&](const Polygon& o) {
-    return is_within(o, a) || is_within(o, b) || share_inside(o, a, b) <= 0.0;
+  return std::ranges::none_of(obstacles_, [&](const Polygon& o) {
+    return enters(o, a, b, std::max({0.0, depth(o, a), depth(o, b)}) + kGraze);
   });
 }
 

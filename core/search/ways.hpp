@@ -24,8 +24,8 @@ class Ways {
     Vector2d next = Vector2d::Zero();  // where its first straight piece ends
   };
 
-  /// Returns the shortest way from `a` to `b`. A point within an obstacle sees what lies outside.
-  /// If there is no way, returns the straight one, longer by the width of the arena.
+  /// Returns the shortest way from `a` to `b`. A way enters an obstacle no deeper than its ends
+  /// lie in it. If there is no way, returns the straight one, longer by the width of the arena.
   Way between(const Vector2d& a, const Vector2d& b) const;
 
  private:

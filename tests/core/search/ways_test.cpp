@@ -67,6 +67,14 @@ TEST(Ways, GoAroundDiscsAndUnions) {
   EXPECT_GT(walls.ways(0.2).between({-4, 0.5}, {4, 0.5}).length, 9.5);
 }
 
+TEST(Ways, FromWithinAnObstacleDoNotPassThroughIt) {
+  Walls walls;
+  walls.add(box(10, 1), {0, 0, 0});  // widened: |y| ≤ 1
+  const Ways ways = walls.ways(0.5);
+  EXPECT_EQ(ways.between({0, -0.8}, {0, -4}).length, 3.2);
+  EXPECT_NEAR(ways.between({0, -0.8}, {0, 0.8}).length, 2.0 * std::hypot(5.5, 0.2) + 2.0, 0.01);
+}
+
 // Triangle inequality, symmetry, and never shorter than the straight line.
 TEST(Ways, AreAMetricInFreeSpace) {
   Walls walls;
