@@ -300,6 +300,14 @@ def test_curves_without_costs_are_named(folder, tmp_path):
     assert_named_and_report_stays(runs, path, "lacks columns; legal: ")
 
 
+def test_a_summary_of_another_kind_is_named(folder, tmp_path):
+    runs = tmp_path / "runs"
+    shutil.copytree(folder, runs)
+    path = runs / CELLS[0].name / "summary.json"
+    write_json(path, {**json.loads(path.read_text()), "replays": "many"})
+    assert_named_and_report_stays(runs, path, "other fields than it should")
+
+
 @pytest.mark.parametrize("name", DAMAGED)
 def test_a_damaged_file_is_named_and_the_report_before_stays(folder, tmp_path, name):
     runs = tmp_path / "runs"

@@ -88,3 +88,10 @@ def test_a_damaged_report_is_named(tmp_path, rows):
     (folder / "generation.json").write_text(json.dumps({"generate_wall_s": 1.0})[:-3])
     with pytest.raises(UserError, match=r"generation\.json: is damaged"):
         events(folder).new()
+
+
+def test_a_report_of_another_kind_is_named(tmp_path, rows):
+    folder = generated(tmp_path / "run", rows)
+    (folder / "generation.json").write_text(json.dumps({"generate_wall_s": [1.0]}))
+    with pytest.raises(UserError, match=r"generation\.json: has other fields"):
+        events(folder).new()

@@ -14,7 +14,7 @@ from rtg import _core
 from rtg.compare.cells import Cell, Grid
 from rtg.compare.estimates import first_reach
 from rtg.compare.methods import METHODS, TASKS
-from rtg.errors import UserError
+from rtg.errors import UserError, fields_of
 from rtg.files import versions
 from rtg.files.run_folder import read_json, result
 from rtg.run import effective_config
@@ -154,7 +154,8 @@ class Comparison:
 def _result(run: Path, cell: Cell, failures: Container[str]) -> RunResult:
     summary = result(run)
     if summary:
-        curve = _curve(run / "progress.csv", summary)
+        with fields_of(run / "summary.json"):
+            curve = _curve(run / "progress.csv", summary)
         made_with = read_json(run / versions.FILE)
         train = effective_config.load_recorded(run / "config.yaml").train
         return RunResult(cell, run, "done", summary, made_with, curve, train)

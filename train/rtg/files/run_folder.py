@@ -283,5 +283,7 @@ def summary(
     }
     first = {key: known.get(key) for key in SUMMARY_KEYS}
     rest = {key: value for key, value in known.items() if key not in first}
-    gaps = generation.get("replay_gaps", [])
-    return {**first, **rest, **({"replay_gap_counts": replay_gaps.counts(gaps)} if gaps else {})}
+    with errors.fields_of(run / "generation.json"):
+        gaps = generation.get("replay_gaps", [])
+        counts = {"replay_gap_counts": replay_gaps.counts(gaps)} if gaps else {}
+    return {**first, **rest, **counts}

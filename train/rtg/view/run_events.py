@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rtg import _core
+from rtg import _core, errors
 from rtg.files import best_episode, dataset, run_folder
 from rtg.files.dataset import Rows
 from rtg.run.results import learning_curve
@@ -88,16 +88,20 @@ class RunEvents:
         return changed
 
     def _generation_time(self) -> float:
-        report = run_folder.read_json(self._folder / "generation.json")
-        return float(report.get("generate_wall_s", 0.0))
+        file = self._folder / "generation.json"
+        report = run_folder.read_json(file)
+        with errors.fields_of(file):
+            return float(report.get("generate_wall_s", 0.0))
 
     def _generation(self) -> list[Event]:
         found: list[Event] = []
         if self._changed("transitions.npz"):
             found += self._stored(self._generation_time())
         if self._changed("generation.json"):
-            report = run_folder.read_json(self._folder / "generation.json")
-            gaps = np.array(report.get("replay_gaps", []), float)
+            file = self._folder / "generation.json"
+            report = run_folder.read_json(file)
+            with errors.fields_of(file):
+                gaps = np.array(report.get("replay_gaps", []), float)
             length = self._generation_time()
             for share in np.arange(1, _GAP_PARTS + 1) / _GAP_PARTS if len(gaps) else ():
                 found.append(Gaps(share * length, gaps[: max(1, int(share * len(gaps)))]))
