@@ -117,7 +117,7 @@ def test_readers_of_the_files_are_told_how_to_see_what_is_made() -> None:
         ("README.md", "index.md"),
         ("docs/tasks.md", "tasks.md"),
         ("core/energy/barrier.hpp", "cpp/core_energy.md#barrier.hpp"),
-        ("config/gathering.png", "files/config/gathering.png"),
+        ("config/gate.png", "files/config/gate.png"),
     ],
 )
 def test_files_have_a_place_in_the_site(file: str, place: str) -> None:

@@ -9,7 +9,7 @@ from exported import run_folder
 from rtg.cli import main
 from rtg.errors import UserError
 from rtg.export import lerobot_format, run_data
-from rtg.pictures.draw import Canvas, arena_window, state_image
+from rtg.pictures.draw import state_image
 
 av = pytest.importorskip("av", reason="the extra `lerobot` is not installed")
 pandas = pytest.importorskip("pandas", reason="the extra `lerobot` is not installed")
@@ -84,7 +84,7 @@ def test_the_film_shows_the_state_of_each_frame(data, folder, episodes, info):
         frames = [frame.to_ndarray(format="rgb24") for frame in film.decode(video=0)]
     assert len(frames) == len(states) and list(frames[0].shape) == info["features"][IMAGES]["shape"]
     task = data.config.task
-    drawn = [state_image(task, s[None], canvas=Canvas(arena_window(task), 256)) for s in states]
+    drawn = [state_image(task, s[None], pixels=256) for s in states]
     away = np.abs(np.array(frames, int)[:, None] - np.array(drawn, int)[None]).mean(axis=(2, 3, 4))
     assert (np.diag(away) < 3).all()  # of 255, by compression
     other = ~np.eye(len(frames), dtype=bool) & (np.abs(states[:, None] - states).max((2, 3)) > 1)

@@ -19,6 +19,7 @@ from rtg.pictures.draw import (
     WALL,
     Canvas,
     arena_window,
+    below_caption,
     blend_with_paper,
     draw_joints,
     episode_window,
@@ -44,7 +45,7 @@ def pixel(picture, x, y, window):
 
 @pytest.mark.parametrize("window", [arena_window(TASK), episode_window(TASK, START)])
 def test_every_body_stands_where_its_pose_says(window):
-    picture = state_image(TASK, START, canvas=Canvas(window))
+    picture = state_image(TASK, START, window=window)
     for body, (x, y, _) in enumerate(TASK.start):
         beside = (x + 0.3, y)  # the centre of an object is marked
         assert pixel(picture, *beside, window) == (ROBOT if body == 0 else KIND_PALETTE[0])
@@ -54,6 +55,19 @@ def test_every_body_stands_where_its_pose_says(window):
 def test_bodies_turn_counterclockwise():
     turned = outline(np.array([[1.0, 0.0], [0.0, 2.0]]), np.array([3.0, 4.0, np.pi / 2]))
     np.testing.assert_allclose(turned, [[3.0, 5.0], [1.0, 4.0]], atol=1e-12)
+
+
+def test_a_caption_lies_on_nothing_and_hides_nothing_of_the_arena():
+    window = below_caption(arena_window(TASK))
+    for height in (0.95, 1.04):  # of the robot's centre, in units of the arena's
+        path = START.copy()
+        path[0, 0, :2] = -0.85 * TASK.arena, height * TASK.arena
+        picture = state_image(TASK, path, caption="a start")
+        empty = state_image(TASK, START, caption="a start")
+        assert picture.shape == (360, 360, 3)
+        assert np.array_equal(picture[:22], empty[:22]) and (empty[:22] != PAPER).any()
+        assert pixel(picture, path[0, 0, 0], 0.98 * TASK.arena, window) == ROBOT
+        assert pixel(picture, 0.0, TASK.arena, window) != PAPER, "the frame"
 
 
 def test_walls_have_a_colour_of_their_own():
@@ -97,7 +111,7 @@ def test_a_pin_shows_whether_its_angle_is_as_asked():
     task = _core.Config.from_file(paths.CONFIG / "art_manip.yaml").task
     poses = np.array(task.start)
     poses[2:, 2] = 1.5  # the first joint is right, the others are not
-    canvas = Canvas(arena_window(task))
+    canvas = Canvas(arena_window(task), 360)
     draw_joints(canvas, task, poses)
     picture, window = canvas.pixels(), arena_window(task)
     pins = [outline(np.array([[1.2, 0.0]]), poses[k])[0] for k in (1, 2)]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
 from rtg.envs.layouts import Layouts
-from rtg.pictures.draw import Canvas, MarkLike, arena_window, objects, outline, state_image
+from rtg.pictures.draw import MarkLike, objects, outline, state_image
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -177,7 +177,7 @@ class Interface:
         return state_image(
             self.task,
             path,
-            canvas=Canvas(arena_window(self.task), pixels),
+            pixels=pixels,
             caption=caption,
             reached=reached,
             marks=None if self._layouts is None else self._outlines(goal),

@@ -17,7 +17,7 @@ from rtg.export.run_data import RunData
 from rtg.export.statistics import Statistics
 from rtg.files import run_folder
 from rtg.files.episodes import Episode
-from rtg.pictures.draw import Canvas, arena_window, state_image
+from rtg.pictures.draw import state_image
 
 _VERSION = "v3.0"
 _FPS: int = PushEnv.metadata["render_fps"]  # one frame is the state before a push
@@ -72,9 +72,8 @@ def _frames(task: _core.Task, episode: Episode, number: int, begin: int) -> dict
 
 
 def _images(task: _core.Task, episode: Episode) -> Iterator[NDArray[np.uint8]]:
-    window = arena_window(task)
     for poses in episode.poses[:-1]:
-        yield state_image(task, poses[None], canvas=Canvas(window, _SIDE))
+        yield state_image(task, poses[None], pixels=_SIDE)
 
 
 def _table(columns: dict[str, _Column], values: dict[str, NDArray[Any]]) -> Any:

@@ -31,6 +31,7 @@ KIND_PALETTE: tuple[Colour, ...] = (
 )
 _DISTINCT = 80.0  # least distance of two colours that are told apart, of levels up to 255
 GREY_LEVEL = 160
+_BAND = 0.13  # height of the band of a caption, in half sides of the window
 OVERSAMPLING = 3  # pictures are drawn this many times larger, then reduced
 
 
@@ -160,6 +161,12 @@ def episode_window(task: TaskLike, poses: Floats) -> Window:
     return Window(float(x), float(y), 0.53 * float((high - low).max()) + 0.4)
 
 
+def below_caption(window: Window) -> Window:
+    """Returns `window` and a margin, with the band of a caption above it. See draw_state()."""
+    half = window.half / (1.0 - _BAND / 2.0)
+    return Window(window.x, window.y + half - window.half, half)
+
+
 class Surface(Protocol):
     """A square picture of `window`, with y upwards. Coordinates are in the world frame [m]."""
 
@@ -181,7 +188,7 @@ class Surface(Protocol):
 class Canvas:
     """A Surface of pixels."""
 
-    def __init__(self, window: Window, pixels: int = 360) -> None:
+    def __init__(self, window: Window, pixels: int) -> None:
         self.window = window
         self._side = pixels * OVERSAMPLING
         self._scale = self._side / (2.0 * window.half)  # [pixel/m]
@@ -321,6 +328,8 @@ def draw_state(
 
     The picture also shows the way of the robot along `path` and the outlines of the objects in its
     first state. `reached` marks a success. `marks`: those of the goal; the task's own if None.
+    A caption stands on a band over the upper edge, where the canvas has to have room for it, as
+    below_caption() makes it.
     """
     path = np.asarray(path, dtype=float)
     a = task.arena
@@ -335,22 +344,31 @@ def draw_state(
     draw_bodies(canvas, task, path[-1])
     draw_joints(canvas, task, path[-1])
     if caption:
-        canvas.text(canvas.window.at(-0.96, 0.96), caption, size=0.09 * canvas.window.half)
+        _draw_caption(canvas, caption)
+
+
+def _draw_caption(canvas: Surface, caption: str) -> None:
+    at = canvas.window.at
+    low = 1.0 - _BAND
+    canvas.polygon([at(-1.0, low), at(1.0, low), at(1.0, 1.0), at(-1.0, 1.0)], PAPER, edge=PAPER)
+    canvas.text(at(-0.96, 0.98), caption, size=0.09 * canvas.window.half)
 
 
 def state_image(
     task: TaskLike,
     path: Floats,
     *,
-    canvas: Canvas | None = None,
+    window: Window | None = None,
+    pixels: int = 360,
     caption: str = "",
     reached: bool = False,
     marks: Sequence[MarkLike] | None = None,
 ) -> NDArray[np.uint8]:
     """Returns the picture of draw_state() as RGB [pixels, pixels, 3].
 
-    Without `canvas`, it shows the whole arena.
+    It shows `window`, by default the whole arena; with a caption, below that.
     """
-    canvas = canvas or Canvas(arena_window(task))
+    window = window or arena_window(task)
+    canvas = Canvas(below_caption(window) if caption else window, pixels)
     draw_state(canvas, task, path, caption=caption, reached=reached, marks=marks)
     return canvas.pixels()

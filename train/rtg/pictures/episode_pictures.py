@@ -13,7 +13,6 @@ from rtg.pictures.draw import (
     INK,
     OVERSAMPLING,
     PAPER,
-    Canvas,
     TaskLike,
     Tile,
     Window,
@@ -109,7 +108,8 @@ def write_sheet(
         state_image(
             task,
             tile.path,
-            canvas=Canvas(window, _TILE_SIDE),
+            window=window,
+            pixels=_TILE_SIDE,
             caption=tile.caption,
             reached=tile.reached,
         )
@@ -161,8 +161,10 @@ def film(path: Path, task: TaskLike, poses: Floats, success: bool, title: str) -
     def add(state: Floats, step: int, milliseconds: int, reached: bool = False) -> None:
         shown = np.concatenate([poses[max(0, step - 3) : step + 1], state[None]])
         shown[:-1, 1:] = state[1:]  # no outlines of earlier places: the film shows the motion
-        canvas = Canvas(window, _FILM_SIDE)
-        picture = state_image(task, shown, canvas=canvas, caption=f"{step}", reached=reached)
+        side, caption = _FILM_SIDE, f"{step}"
+        picture = state_image(
+            task, shown, window=window, pixels=side, caption=caption, reached=reached
+        )
         frames.append(Image.fromarray(np.concatenate([above, picture, below])))
         durations.append(milliseconds)
 

@@ -24,6 +24,7 @@ from rtg.pictures.draw import (
     TaskLike,
     Tile,
     Window,
+    below_caption,
     draw_state,
     kind_colours,
 )
@@ -94,9 +95,8 @@ def write(
         low = height - _BAND - _SIDE * (k // columns + 1)
         place = (_SIDE * (k % columns) / width, low / height, _SIDE / width, _SIDE / height)
         axes = figure.add_axes(place, facecolor=_rgb(PAPER))
-        draw_state(
-            VectorCanvas(axes, window), task, tile.path, caption=tile.caption, reached=tile.reached
-        )
+        canvas = VectorCanvas(axes, below_caption(window))
+        draw_state(canvas, task, tile.path, caption=tile.caption, reached=tile.reached)
     middle = 1.0 - 0.5 * _BAND / height
     words = figure.text(0.01, middle, title, va="center", color=_rgb(INK), size=_TITLE)
     extent = words.get_window_extent()
