@@ -1,7 +1,9 @@
 """Checks what the pictures of a comparison show."""
 
+import itertools
 import statistics
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from comparison_samples import finished, write_grid
@@ -148,6 +150,22 @@ def test_success_is_drawn_over_each_mean_cost_of_the_whole_run(tmp_path, figures
     assert [axis.get_xscale() for axis in figures[0].axes] == ["log"] * 3
 
 
+@pytest.mark.parametrize("low", [1.0, 2.3, 7.9])
+@pytest.mark.parametrize("ratio", [1.1, 1.5, 3.0, 9.0, 30.0, 500.0])
+def test_labels_of_costs_are_some_and_do_not_overlap(low, ratio):
+    figure, axes = plt.subplots(1, 3, figsize=(12.6, 5.0), layout="constrained", sharey=True)
+    axes[0].plot([1e5 * low, 1e5 * low * ratio], [0.0, 1.0])
+    report_plots.scale_cost(axes[0])
+    figure.draw_without_rendering()
+    labels = axes[0].get_xticklabels()
+    extents = [label.get_window_extent() for label in labels]
+    left, _, right, _ = axes[0].get_window_extent().extents
+    shown = [one for one in extents if one.width and left <= (one.x0 + one.x1) / 2 <= right]
+    plt.close(figure)
+    assert len(shown) >= 2
+    assert all(one.x1 < other.x0 for one, other in itertools.pairwise(shown))
+
+
 def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):
     cells = {
         Cell("gathering", "ddqn_rtg", (), 1): [0.5, 0.97],
@@ -165,6 +183,21 @@ def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):
     assert [text.get_text() for text in reached.texts] == ["1 never"]
     names = [tick.get_text() for tick in success.get_yticklabels()]
     assert names == ["ddqn_rtg as it is", "train.batch=8", "train.batch=16"]
+
+
+def test_who_never_got_there_stands_beside_the_dots_and_alone_without_numbers(tmp_path, figures):
+    for curve in ([0.95, 0.8], [0.5, 0.8]):
+        cells = {Cell("gathering", "ddqn_rtg", ("train.batch=8",), 1): [0.5, 0.6]}
+        cells[Cell("gathering", "ddqn_rtg", ("train.batch=8",), 2)] = curve
+        shown = comparison(tmp_path / str(curve[0]), cells)
+        report_plots.sweep(tmp_path / "sweep.png", shown, "gathering")
+    some, none = (figure.axes[1] for figure in figures)
+    some.figure.draw_without_rendering()
+    (dots,) = (line for line in some.get_lines() if line.get_marker() == "o")
+    (words,) = some.texts
+    last = some.transData.transform((dots.get_xdata().max(), 0.0))[0]
+    assert last + 5 < words.get_window_extent().x0
+    assert len(none.get_xticks()) == 0 < len(some.get_xticks())
 
 
 def test_swept_values_of_two_methods_are_told_apart(tmp_path, figures):

@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 from types import SimpleNamespace
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from PIL import Image
@@ -313,6 +314,25 @@ def test_the_legend_of_the_curves_covers_none_of_them(figures):
     legend = figure.legends[0].get_window_extent()
     assert len(figure.legends[0].get_texts()) == 2
     assert not any(legend.overlaps(axis.get_window_extent()) for axis in figure.axes)
+
+
+def test_a_headline_fits_into_its_figure():
+    for words in ("m" * 10, "m" * 200):
+        figure = plt.figure()
+        plots.headline(figure, words)
+        extent = figure._suptitle.get_window_extent()
+        plt.close(figure)
+        assert extent.x0 > 0.0 and extent.x1 < figure.bbox.width
+
+
+def test_the_legend_of_gaps_hides_neither_line(figures):
+    report = {"replay_gaps": [0.0002] * 13, "replay_gap_median": 0.0002, "replay_gap_p90": 0.01}
+    plots.replay_gap(Path("gap.png"), "a run", report)
+    (axis,) = figures[0].axes
+    figures[0].draw_without_rendering()
+    legend = axis.get_legend().get_window_extent()
+    tops = [line.get_window_extent().y1 for line in axis.get_lines()]
+    assert len(tops) == 2 and max(tops) < legend.y0
 
 
 def of_kinds(*kinds):

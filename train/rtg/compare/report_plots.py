@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import EngFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
 from rtg.compare.estimates import carried_forward
@@ -179,11 +179,12 @@ def _add_legend(figure: Figure, runs_by_label: RunsByLabel, title: str, columns:
             frameon=False,
             handlelength=3.0,
             title=f"{shared or 'method'}: final success (seeds)",
+            alignment="left",
         )
         if count == 1 or legend.get_window_extent().width <= figure.bbox.width:
             break
         legend.remove()
-    figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+    plots.headline(figure, title)
 
 
 def _name_hidden(axis: Axes, runs_by_label: RunsByLabel) -> None:
@@ -234,6 +235,17 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
         plots.save(figure, path)
 
 
+def scale_cost(axis: Axes) -> None:
+    """Makes the x-axis logarithmic, with some labels that do not overlap, whatever its range."""
+    axis.set_xscale("log")
+    low, high = axis.get_xlim()
+    is_wide = high >= 10.0 * low
+    few = LogLocator(subs=(1.0, 3.0)) if is_wide else MaxNLocator(4, steps=[1, 2, 5, 10])
+    axis.xaxis.set_major_locator(few)
+    axis.xaxis.set_major_formatter(EngFormatter(sep=""))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+
+
 def costs(path: Path, comparison: Comparison, task: str) -> None:
     """Plots greedy success over each cost, on a logarithmic axis, with a line per label.
 
@@ -251,10 +263,8 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
                 curve = mean_cost[shown], values[:, shown]
                 _draw_curve(axis, curve, True, styles[label], mean_success(runs))
             axis.axhline(THRESHOLD, color=_THRESHOLD_COLOUR, lw=0.8, zorder=0)
-            axis.set(xscale="log", xlabel=name, ylim=(-0.03, 1.03))
-            axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            axis.xaxis.set_major_formatter(EngFormatter(sep=""))
-            axis.xaxis.set_minor_formatter(NullFormatter())
+            axis.set(xlabel=name, ylim=(-0.03, 1.03))
+            scale_cost(axis)
         axes[0].set_ylabel("greedy success, held-out starts")
         title = (
             f"{task}: success against the mean cost, mean ± standard deviation of the seeds; dots: "
@@ -325,7 +335,11 @@ def sweep(path: Path, comparison: Comparison, task: str) -> None:
         axes[0].set(title="greedy success at the end", xlim=(-0.03, 1.03))
         axes[0].set_ylim(len(rows) - 0.5, -0.5)
         axes[1].set_title(f"interactions / 1000 to {THRESHOLD}")
-        axes[1].set_xlim(left=0.0)
+        latest = axes[1].dataLim.xmax
+        if np.isfinite(latest):
+            axes[1].set_xlim(0.0, 1.15 * latest)  # with room for the words at the right
+        else:
+            axes[1].set_xticks([])
         title = f"{task}: a dot per seed, a bar for their mean"
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        plots.headline(figure, title)
         plots.save(figure, path)

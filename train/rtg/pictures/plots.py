@@ -51,6 +51,9 @@ _STYLE: Any = {
 GAP_AXIS = (
     f"replay gap: mean distance between reverse-generated and replayed end\n[{replay_gaps.UNIT}]"
 )
+_HEADLINE = 11.0  # size of the letters [point]
+_INDENT = 0.01  # of a headline, in widths of its figure
+_ROOM = 0.35  # above the bars of a histogram, for its legend, in heights of the bars
 _BLUE, _ORANGE = "#4a7ebb", "#d9822b"
 
 
@@ -77,6 +80,13 @@ def save(figure: Figure, path: Path) -> None:
     """Writes the figure to the file renamed(path), and closes it."""
     figure.savefig(renamed(path), dpi=130)
     plt.close(figure)
+
+
+def headline(figure: Figure, title: str) -> None:
+    """Writes the title of a figure above its panels, as large as fits into its width."""
+    words = figure.suptitle(title, x=_INDENT, ha="left", fontsize=_HEADLINE, fontweight="bold")
+    room = (1.0 - 2.0 * _INDENT) * figure.bbox.width
+    words.set_fontsize(_HEADLINE * min(1.0, room / words.get_window_extent().width))
 
 
 def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: str) -> None:
@@ -123,7 +133,7 @@ def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: st
                 axis.set_ylim(*limits)
         lines = axes[0].get_lines()
         figure.legend(handles=lines, loc="outside upper right", ncols=len(lines), frameon=False)
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        headline(figure, title)
         save(figure, path)
 
 
@@ -149,7 +159,7 @@ def stages(path: Path, title: str, parts: Mapping[str, Mapping[str, Mapping[str,
         axis.grid(visible=False, axis="y")
         axis.set_xlabel("s")
         figure.legend(loc="outside upper right", ncols=2, frameon=False)
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        headline(figure, title)
         save(figure, path)
 
 
@@ -163,16 +173,17 @@ def gap_histogram(axis: Axes, counts: Sequence[int], median: float, p90: float) 
 
     `counts`: number of gaps in each bin of rtg.files.replay_gaps. [bins]
     """
-    bounds, top = replay_gaps.EDGES, int(np.flatnonzero(counts).max(initial=0)) + 1
+    bounds, last = replay_gaps.EDGES, int(np.flatnonzero(counts).max(initial=0)) + 1
     axis.bar(bounds[:-1], counts, np.diff(bounds), align="edge", color=_BLUE, alpha=0.85)
     axis.set_xscale("log")
-    axis.set_xlim(bounds[0] / 1.1, bounds[top] * 1.1)
+    axis.set_xlim(bounds[0] / 1.1, bounds[last] * 1.1)
     axis.set_ylabel("simulated reverse steps")
     axis.yaxis.set_major_locator(MaxNLocator(integer=True))
-    axis.margins(y=0.35)  # room for the legend above the bars
+    axis.margins(y=_ROOM)
     for words, gap, line_style in (("median", median, "-"), ("90th percentile", p90, "--")):
         at = max(gap, float(bounds[0]))
-        axis.axvline(at, color=_ORANGE, lw=1.5, ls=line_style, label=f"{words} {_metres(gap)}")
+        label, top = f"{words} {_metres(gap)}", 1.0 / (1.0 + _ROOM)
+        axis.axvline(at, ymax=top, color=_ORANGE, lw=1.5, ls=line_style, label=label)
     axis.legend(loc="upper left")
 
 
@@ -295,5 +306,5 @@ def coverage(
             f"frame: arena, {2 * task.arena / task.metre:g} m wide",
             fontsize=8,
         )
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        headline(figure, title)
         save(figure, path)
