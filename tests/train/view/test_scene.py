@@ -10,23 +10,25 @@ import scaled
 from recordings import read
 from rtg import _core, paths
 from rtg.files.dataset import Rows
-from rtg.pictures.draw import GREY_LEVEL, KIND_PALETTE, WALL
+from rtg.pictures.draw import GREY_LEVEL, KIND_PALETTE, WALL, mark_fill, outline
 from rtg.view import scene, trees
 from rtg.view.step_tree import StepTree
 
 
-def logged(tmp_path, file):
+def logged(tmp_path, file, states=None):
     task = _core.Config.from_file(paths.CONFIG / file).task
     recording = rr.RecordingStream("test")
     recording.save(tmp_path / "scene.rrd")
     scene.log_scene(recording, task)
+    if states is not None:
+        scene.log_poses(recording, task, np.arange(float(len(states))), states)
     recording.flush()
     recording.disconnect()
     return task, read(tmp_path / "scene.rrd")
 
 
 def colour(found, path):
-    (mesh,) = found[path]
+    mesh = found[path][0]
     packed = mesh.values["vertex_colors"][0]
     return tuple(packed.to_bytes(4, "big")[:3])
 
@@ -51,6 +53,41 @@ def test_each_goal_has_a_mark_and_small_ones_lie_on_top(tmp_path):
     assert len(marks) == len(task.goal_marks) == 2
     heights = [found[path][0].values["vertex_positions"][0][2] for path in sorted(marks)]
     assert heights == sorted(heights) and heights[0] < heights[1] < scene.WALL_HEIGHT
+
+
+def moved(points, logged):
+    """Returns points [V, 3] where a logged transform takes them. [V, 2]"""
+    (translation,), ((*_, sine, cosine),) = (
+        logged.values["translation"],
+        logged.values["quaternion"],
+    )
+    return outline(
+        np.array(points)[:, :2], np.array([*translation[:2], 2 * np.arctan2(sine, cosine)])
+    )
+
+
+@pytest.mark.parametrize("file", ["insert.yaml", "pack.yaml", "drawer.yaml", "art_manip.yaml"])
+def test_marks_go_with_the_bodies_as_in_pictures(tmp_path, file):
+    task = _core.Config.from_file(paths.CONFIG / file).task
+    states = np.stack([np.array(task.start)] * 3)
+    states[1, :, :2] += 0.5, -1.0
+    states[2, :, 2] += 0.4
+    task, found = logged(tmp_path, file, states)
+    of_bodies = len(task.body_marks(states[:1]))
+    expected = [[*task.body_marks(s[None]), *task.joint_marks(s[None])] for s in states]
+    assert len(expected[0]) > 0
+    for number in range(len(expected[0])):
+        path = f"scene/marks/{number}"
+        mesh, *frames = found[path]
+        has_edge = number < of_bodies or expected[0][number].target
+        assert (f"{path}/edge" in found) == has_edge
+        assert colour(found, path) == mark_fill(task, expected[0][number])
+        points = mesh.values["vertex_positions"]
+        assert scene.GOAL_HEIGHT < points[0][2] < scene.WALL_HEIGHT
+        for marks, frame in zip(expected, frames, strict=True):
+            ring = marks[number].ring
+            away = np.linalg.norm(moved(points, frame)[:, None] - ring[None], axis=2).min(axis=0)
+            assert away.max() < 1e-4, "each corner of the mark is one of the mesh"
 
 
 def test_the_colours_of_depths_begin_and_end_with_those_of_the_scale():

@@ -227,17 +227,27 @@ def _area(ring: Floats) -> float:
 
 
 def mark_colour(task: TaskLike, mark: MarkLike) -> Colour:
-    """Returns the colour of a mark: that of its kind, AVOID if the term is negated."""
+    """Returns the colour of the edge of a mark: that of its kind, AVOID if the term is negated."""
     return AVOID if mark.negated else kind_colours(task).get(mark.kind, GOAL)
+
+
+def mark_fill(task: TaskLike, mark: MarkLike, reached: bool = False) -> Colour:
+    """Returns the colour of the area of a mark, darker if `reached`."""
+    return blend_with_paper(mark_colour(task, mark), 0.38 if reached else 0.18)
+
+
+def large_first(marks: Sequence[MarkLike]) -> list[MarkLike]:
+    """Returns the marks in the order of drawing: small ones lie on top of large ones."""
+    return sorted(marks, key=lambda mark: -_area(mark.ring))
 
 
 def draw_goal(
     canvas: Surface, task: TaskLike, marks: Sequence[MarkLike], reached: bool = False
 ) -> None:
-    """Draws the marks of a goal, darker if `reached`. Small ones lie on top of large ones."""
-    for mark in sorted(marks, key=lambda mark: -_area(mark.ring)):
-        colour = mark_colour(task, mark)
-        canvas.polygon(mark.ring, blend_with_paper(colour, 0.38 if reached else 0.18), edge=colour)
+    """Draws the marks of a goal, darker if `reached`."""
+    for mark in large_first(marks):
+        fill = mark_fill(task, mark, reached)
+        canvas.polygon(mark.ring, fill, edge=mark_colour(task, mark))
 
 
 def draw_joint_goals(canvas: Surface, task: TaskLike, poses: Floats) -> None:
@@ -248,8 +258,8 @@ def draw_joint_goals(canvas: Surface, task: TaskLike, poses: Floats) -> None:
     """
     marks = task.joint_marks(poses[None])
     for mark in marks:
-        colour = blend_with_paper(mark_colour(task, mark), 0.18)
-        canvas.polygon(mark.ring, colour, edge=colour)
+        fill = mark_fill(task, mark)
+        canvas.polygon(mark.ring, fill, edge=fill)
     for mark in marks:
         if mark.target:
             canvas.line(np.vstack([mark.ring, mark.ring[:2]]), mark_colour(task, mark), 0.07)

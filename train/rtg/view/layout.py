@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import rerun.blueprint as rrb
 
 from rtg import _core
-from rtg.files import replay_gaps
 from rtg.pictures.draw import PAPER, arena_window, objects
 from rtg.view.figures import GAP, LEARNING, STATE
 from rtg.view.scene import TIME
@@ -58,6 +57,7 @@ def _learning() -> rrb.TimeSeriesView:
 def _trees(config: _core.Config) -> rrb.Grid:
     task = config.task
     fixed = ("scene/arena", "scene/goal/**", "starts", "legend/**")
+    bodies = objects(task)
     return rrb.Grid(
         *(
             _from_above(
@@ -66,8 +66,9 @@ def _trees(config: _core.Config) -> rrb.Grid:
                 [*fixed, f"start/{task.names[body]}", tree_path(task, body)],
                 whole=True,
             )
-            for body in objects(task)
+            for body in bodies
         ),
+        grid_columns=round(len(bodies) ** 0.5),  # panels wider than high hold the whole arena
         name="trees",
     )
 
@@ -78,7 +79,7 @@ def layout(config: _core.Config, time_panel: rrb.TimePanel) -> rrb.Blueprint:
     state = rrb.TextDocumentView(name="run", origin=f"/{STATE}")
     if config.train.offline:
         gaps = rrb.BarChartView(
-            name=f"replay gap: steps, over log10 of the gap [{replay_gaps.UNIT}]",
+            name="replay gap: steps by log10 of metres",
             origin=f"/{GAP}",
             plot_legend=rrb.PlotLegend(visible=False),
         )
