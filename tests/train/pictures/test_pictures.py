@@ -316,13 +316,16 @@ def test_the_legend_of_the_curves_covers_none_of_them(figures):
     assert not any(legend.overlaps(axis.get_window_extent()) for axis in figure.axes)
 
 
-def test_a_headline_fits_into_its_figure():
-    for words in ("m" * 10, "m" * 200):
-        figure = plt.figure()
-        plots.headline(figure, words)
-        extent = figure._suptitle.get_window_extent()
-        plt.close(figure)
-        assert extent.x0 > 0.0 and extent.x1 < figure.bbox.width
+@pytest.mark.parametrize("count", [3, 14, 15, 16, 17, 40])
+def test_a_headline_fits_into_its_file(tmp_path, count):
+    with plots.style():
+        figure = plt.figure(figsize=(9.6, 1.0), layout="constrained")
+        plots.headline(figure, "starts; " * count)
+        plots.save(figure, tmp_path / "a.png")
+    with Image.open(tmp_path / "a.png") as picture:
+        shown = np.asarray(picture.convert("RGB"))
+    inked = np.flatnonzero((shown != PAPER).any(axis=(0, 2)))
+    assert shown.shape[1] == 1248 and 0 < inked[0] < 20 and 100 < inked[-1] < 1245
 
 
 def test_the_legend_of_gaps_hides_neither_line(figures):

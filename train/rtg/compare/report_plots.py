@@ -188,15 +188,15 @@ def _add_legend(figure: Figure, runs_by_label: RunsByLabel, title: str, columns:
 
 
 def _name_hidden(axis: Axes, runs_by_label: RunsByLabel) -> None:
-    """Names the labels whose lines hide each other, as their success is never above 0."""
+    """Names below the panel the labels whose lines hide each other, with a success of 0."""
     at_zero = [
         label
         for label, runs in runs_by_label.items()
         if all(np.nanmax(run.curve["success_rate"], initial=0.0) == 0.0 for run in runs)
     ]
     if len(at_zero) > 1:
-        words = _wrapped(f"always 0: {', '.join(split_names(at_zero)[1])}", 44)
-        axis.text(0.98, 0.04, words, transform=axis.transAxes, ha="right", va="bottom", fontsize=8)
+        words = _wrapped(f"always 0: {', '.join(split_names(at_zero)[1])}", 70)
+        axis.set_xlabel(words, loc="right", fontsize=8)
 
 
 def curves(path: Path, comparison: Comparison, task: str) -> None:

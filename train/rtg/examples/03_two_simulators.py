@@ -20,7 +20,7 @@ def main(folder: Path) -> None:
     apart = np.linalg.norm((newton - box2d)[used, 1:, :2], axis=2).max(axis=1)
     print(f"{used.sum()} pushes move a box; they end {np.median(apart):.3f} m apart in the median")
 
-    figure, axes = plt.subplots(1, 3, figsize=(9, 3.3), layout="constrained")
+    figure, axes = plt.subplots(1, 3, figsize=(9, 3.5), layout="constrained")
     push = np.flatnonzero(used)[apart.argmax()]
     for axis, state, title in zip(
         axes, (starts[push], newton[push], box2d[push]), ("before", "Newton", "Box2D"), strict=True

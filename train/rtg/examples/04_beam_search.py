@@ -21,7 +21,9 @@ def main(folder: Path) -> None:
     figure, (way, tree) = plt.subplots(1, 2, figsize=(11, 5), layout="constrained")
     way.plot(left, "o-")
     way.set(xlabel="layer", ylabel="pushes between the beam and the start, estimated")
-    tree.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", title="box1 in the nodes, by depth")
+    tree.set(
+        aspect="equal", xlabel="x [m]", ylabel="y [m]", title="box1 in the nodes; star: its start"
+    )
     for area in task.goal:
         tree.fill(*area.ring.T, color="green", alpha=0.15)
     points = tree.scatter(*nodes.states[:, 1, :2].T, c=nodes.depths, s=8)

@@ -26,7 +26,7 @@ def main(folder: Path) -> None:
         rows = moved[:, body]
         axes.plot(*data.states[rows, 1 + body, :2].T, ".", ms=3, label=f"{name}: {rows.sum()}")
     axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", title="Where pushes move the boxes")
-    axes.legend()
+    axes.legend(title="box: pushes")
     axes.figure.savefig(folder / "05_transitions.png", dpi=100)
 
 

@@ -46,7 +46,7 @@ def main(folder: Path, transitions: int = 10000, interactions: int = 15000) -> N
     values = policy.values(own.states).max(axis=1)
     axes = plt.figure(figsize=(6, 4)).gca()
     axes.plot(values[:200])
-    axes.set(xlabel="push of the script", ylabel="value of the policy", ylim=(0, 1))
+    axes.set(xlabel="push of the script", ylabel="value of the policy", ylim=(0, None))
     axes.figure.savefig(folder / "10_own_data.png", dpi=100)
 
 

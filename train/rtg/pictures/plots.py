@@ -33,6 +33,7 @@ Floats = NDArray[np.float64]
 
 _STYLE: Any = {
     "font.size": 10,
+    "figure.dpi": 130,  # text measured in a figure is as wide as in its file
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.edgecolor": "#8a8d93",
@@ -78,7 +79,7 @@ def renamed(path: Path) -> Path:
 
 def save(figure: Figure, path: Path) -> None:
     """Writes the figure to the file renamed(path), and closes it."""
-    figure.savefig(renamed(path), dpi=130)
+    figure.savefig(renamed(path))
     plt.close(figure)
 
 
@@ -86,7 +87,8 @@ def headline(figure: Figure, title: str) -> None:
     """Writes the title of a figure above its panels, as large as fits into its width."""
     words = figure.suptitle(title, x=_INDENT, ha="left", fontsize=_HEADLINE, fontweight="bold")
     room = (1.0 - 2.0 * _INDENT) * figure.bbox.width
-    words.set_fontsize(_HEADLINE * min(1.0, room / words.get_window_extent().width))
+    while words.get_window_extent().width > room and words.get_fontsize() > 1.0:
+        words.set_fontsize(0.98 * words.get_fontsize())  # widths are not in proportion to sizes
 
 
 def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: str) -> None:

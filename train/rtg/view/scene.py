@@ -169,7 +169,9 @@ def log_scene(recording: rr.RecordingStream, task: TaskLike) -> None:
         _log_edges(recording, body_path(task, body), rings, INK, height + 0.01)
     _log_joints(recording, task)
     edges = [raised(closed(outline(r[0], p)), OBJECT_HEIGHT) for r, p in _starts(task)]
-    recording.log("starts", rr.LineStrips3D(edges, colors=[INK], radii=_EDGE / 2), static=True)
+    recording.log(
+        "starts", rr.LineStrips3D(edges, colors=[INK], radii=rr.Radius.ui_points(0.6)), static=True
+    )
 
 
 def _starts(task: TaskLike) -> list[tuple[Sequence[Floats], Floats]]:
