@@ -87,8 +87,10 @@ def headline(figure: Figure, title: str) -> None:
     """Writes the title of a figure above its panels, as large as fits into its width."""
     words = figure.suptitle(title, x=_INDENT, ha="left", fontsize=_HEADLINE, fontweight="bold")
     room = (1.0 - 2.0 * _INDENT) * figure.bbox.width
-    while words.get_window_extent().width > room and words.get_fontsize() > 1.0:
-        words.set_fontsize(0.98 * words.get_fontsize())  # widths are not in proportion to sizes
+    size = _HEADLINE
+    while words.get_window_extent().width > room and size > 1.0:
+        size *= 0.98
+        words.set_fontsize(size)  # widths are not in proportion to sizes
 
 
 def learning_curve(path: Path, title: str, curve: Mapping[str, Floats], unit: str) -> None:

@@ -158,7 +158,7 @@ def log_scene(recording: rr.RecordingStream, task: TaskLike) -> None:
     corners = np.array([[-a, -a], [a, -a], [a, a], [-a, a]])
     recording.log(
         "scene/arena",
-        rr.LineStrips3D([raised(closed(corners), 0.0)], colors=[TRAIL], radii=0.04),
+        rr.LineStrips3D([raised(closed(corners), EDGE_HEIGHT)], colors=[TRAIL], radii=0.04),
         static=True,
     )
     _log_goal(recording, task)
