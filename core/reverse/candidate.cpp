@@ -9,6 +9,7 @@
 #include "core/energy/open_gaps.hpp"
 #include "core/math/assembled_solver.hpp"
 #include "core/math/riccati.hpp"
+#include "core/reverse/pace.hpp"
 #include "core/reverse/pruning.hpp"
 #include "core/reverse/sqp/filter_sqp.hpp"
 #include "core/reverse/sqp/merit_sqp.hpp"
@@ -80,7 +81,9 @@ Candidate::Candidate(const Scene& scene, const PhysicsConfig& physics, const Pus
                with_open_gaps(energy_, energy::stacked(subscene_.poses)),
                direction(job.action, push),
                physics.sub_steps + physics.settling_steps(),
-               physics.settling_steps()} {}
+               physics.settling_steps()} {
+  problem_.pace = least_pace(problem_, subscene_.scene);
+}
 
 std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidates) {
   if (candidates.empty()) return {};

@@ -10,6 +10,7 @@ ProblemLanes<T>::ProblemLanes(const ReverseProblem& like)
       config(like.config),
       end(static_cast<std::size_t>(like.end.size()), T(0.0)),
       direction(T(0.0), T(0.0)),
+      pace(1.0),
       sub_steps(like.sub_steps),
       settling(like.settling) {}
 
@@ -19,11 +20,12 @@ void ProblemLanes<T>::load(int lane, const ReverseProblem& one) {
   for (std::size_t m = 0; m < end.size(); ++m)
     set_lane(end[m], lane, one.end[static_cast<Eigen::Index>(m)]);
   for (int m = 0; m < 2; ++m) set_lane(direction[m], lane, one.direction[m]);
+  set_lane(pace, lane, one.pace);
 }
 
 template <class T>
 Vec3<T> ProblemLanes<T>::robot_path(int k) const {
-  const T back(energy.stride() * std::max(sub_steps - settling - k, 0));
+  const T back = pace * T(energy.stride() * std::max(sub_steps - settling - k, 0));
   return {end[0] - back * direction.x(), end[1] - back * direction.y(), end[2]};
 }
 

@@ -30,6 +30,7 @@ struct ProblemLanes {
   const ReverseConfig& config;
   std::vector<T> end;  // p̄ [3·bodies]
   Vec2<T> direction;
+  T pace;
   int sub_steps, settling;
 };
 

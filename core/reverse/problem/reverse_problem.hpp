@@ -15,7 +15,8 @@ namespace rtg::reverse {
 ///   s.t. Φ_k = ∂Ψ/∂p₊(p_k, p_{k-1}, p_{k-2}, c_k) = 0,   λ_k g(p_k) = μ̃ w(g(p_k)),   g > 0,
 ///        at the start λ_0 (g(p_0) + g_s) = μ̃ w(g(p_0)), see Barrier::start_spare().
 ///
-/// p̄ is the given final state. (t̄₀, θ̄₀)_k is the straight path of the robot that ends in p̄.
+/// p̄ is the given final state. (t̄₀, θ̄₀)_k is the straight path of the robot that ends in p̄, at
+/// `pace` times the speed of a push.
 /// q_{k,i} is half the squared speed of object i, in units of the robot's speed (SpeedPenalty). The
 /// term in brackets belongs to dynamic mode. In this mode bodies are at rest before the push,
 /// p_{-1} = p_0. They also come to rest at its end, p_{h-1} = p_h, in `settling` sub-steps in which
@@ -30,6 +31,7 @@ struct ReverseProblem {
   Vector2d direction;  // d(a)
   int sub_steps = 1;   // h
   int settling = 0;    // sub-steps at the end in which the robot is held
+  double pace = 1.0;   // speed of the robot on its path / its speed without a load (pace.hpp)
 };
 
 /// An iterate of the SQP: a trajectory with its forces and multipliers. Entry k belongs to the end

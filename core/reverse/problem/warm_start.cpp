@@ -36,7 +36,8 @@ WarmStart<T>::WarmStart(const ProblemLanes<T>& problem)
 /// Returns the lag of the robot's servo behind its target in steady motion [m].
 template <class T>
 T WarmStart<T>::servo_lead() const {
-  const T share = scene_.damping(0).mass * T(scene_.stride()) / scene_.control_bound()[0];
+  const T share =
+      scene_.damping(0).mass * problem_.pace * T(scene_.stride()) / scene_.control_bound()[0];
   const T bounded = lesser(share, T(1.0 - 1e-12));
   const T artanh = T(0.5) * logarithm((T(1.0) + bounded) / (T(1.0) - bounded));
   return select(share < T(1.0), artanh * T(energy::servo_scale(scene_.stride())), T(0.0));
@@ -109,8 +110,8 @@ void WarmStart<T>::move_back(const T& floor, const Mask<T>& wanted) {
 template <class T>
 Mask<T> WarmStart<T>::step_back(int k, const Mask<T>& wanted) {
   const Vec3<T> here(start_.p[0], start_.p[1], start_.p[2]);
-  const Vec3<T> stride(T(scene_.stride()) * problem_.direction.x(),
-                       T(scene_.stride()) * problem_.direction.y(), T(0.0));
+  const T step = problem_.pace * T(scene_.stride());
+  const Vec3<T> stride(step * problem_.direction.x(), step * problem_.direction.y(), T(0.0));
   scene_.forces(start_, forces_.data());
   Mask<T> going =
       push({start_, forces_.data(), last_displacement_.data()}, here + stride, wanted, pushed_);
@@ -154,7 +155,7 @@ Vec3<T> WarmStart<T>::mirrored_path(int k) const {
   Vec3<T> pose = problem_.robot_path(k);
   const double steps = std::min(static_cast<double>(beyond), scene_.coasting());
   for (int m = 0; m < 2 && beyond > 0; ++m)
-    pose[m] += T(steps * scene_.stride()) * problem_.direction[m];
+    pose[m] += problem_.pace * T(steps * scene_.stride()) * problem_.direction[m];
   return pose;
 }
 

@@ -178,6 +178,38 @@ TEST(ReverseSimulator, APushFromAnyOfTheStartsLeadsToTheEnd) {
   EXPECT_LT(gaps[gaps.size() * 8 / 10], 0.1);
 }
 
+// The box weighs 7 times as much as the robot, whose force is enough for 0.76 of its speed. At
+// full speed it would be dragged by 0.3 m. Paces are exact to 0.05, so ends to 0.1 m.
+TEST(ReverseSimulator, APushFromAnyStartBeforeAHeavyBoxLeadsToTheEnd) {
+  Scene scene = robot_and_boxes(1);
+  scene.bodies[1].density = 8.0;
+  const forward::NewtonSimulator model(scene, kPush, kPhysics);
+  for (const double turn : {0.0, 0.3}) {
+    const Poses end = model.push({{-1.5, 0, 0}, {0, 0.1, turn}}, 0).end;
+    const ReverseResult result = solve(scene, {end, 0});
+    ASSERT_EQ(result.predecessors.size(), 8U);
+    EXPECT_LT(result.predecessors[0][1].x, end[1].x - 1.3);
+    for (const Poses& start : result.predecessors) {
+      const Poses reached = model.push(start, 0).end;
+      for (const std::size_t k : {0U, 1U})
+        EXPECT_LT((reached[k].position() - end[k].position()).norm(), 0.15) << start[1].x;
+    }
+  }
+}
+
+// The robot passes the heavy box and pushes the light one.
+TEST(ReverseSimulator, AHeavyBoxThatThePushDoesNotMoveDoesNotSlowIt) {
+  Scene scene = robot_and_boxes(2);
+  const ReverseJob job{{{0, 0, 0}, {1.41, 0.2, 0.05}, {-1.0, 1.43, 0}}, 0};
+  const ReverseResult light = solve(scene, job);
+  scene.bodies[2].density = 8.0;
+  const ReverseResult heavy = solve(scene, job);
+  EXPECT_LT(
+      (heavy.predecessors.at(0)[1].position() - light.predecessors.at(0)[1].position()).norm(),
+      0.01);
+  EXPECT_GT(heavy.iterations, light.iterations) << "nothing was solved again";
+}
+
 // The robot begins where it does for the whole push, the objects part of the way.
 TEST(ReverseSimulator, LateContactsStandBetweenTheStartOfTheWholePushAndTheEnd) {
   const ReverseJob job = touching_job();

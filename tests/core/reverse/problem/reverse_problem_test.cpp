@@ -37,6 +37,8 @@ TEST(ReverseProblem, RobotPathIsStraightAndEndsInTheEnd) {
   EXPECT_LT((robot_path(problem, 10) - Vector3d(1, 2, 0.3)).norm(), 1e-15);
   EXPECT_LT((robot_path(problem, 0) - Vector3d(1 - 1.2, 2 - 1.6, 0.3)).norm(), 1e-15);
   EXPECT_LT((robot_path(problem, 4) - Vector3d(1 - 0.72, 2 - 0.96, 0.3)).norm(), 1e-15);
+  problem.pace = 0.5;
+  EXPECT_LT((robot_path(problem, 4) - Vector3d(1 - 0.36, 2 - 0.48, 0.3)).norm(), 1e-15);
 }
 
 TEST(ReverseProblem, StaticIterateRestsInTheEnd) {
