@@ -160,4 +160,12 @@ double BeamSearch::min_start_distance() const {
   return best;
 }
 
+int BeamSearch::start_depth() const {
+  int least = -1;
+  for (const Node& n : nodes_)
+    if (n.depth > 0 && (least < 0 || n.depth < least) && in_place(metric_, n.poses, target_))
+      least = n.depth;
+  return least;
+}
+
 }  // namespace rtg::search

@@ -59,6 +59,10 @@ class BeamSearch {
   /// Returns the smallest start_distance() of the beam's nodes; infinity if the beam is empty.
   double min_start_distance() const;
 
+  /// Returns the least depth of a node, but for goal states, with all objects in_place()
+  /// of the target; -1 if there is none.
+  int start_depth() const;
+
   std::span<const Node> nodes() const { return nodes_; }
   std::span<const int> beam() const { return beam_; }  // indices into nodes()
 

@@ -4,12 +4,10 @@
 
 #include "core/reverse/problem/reverse_job.hpp"
 #include "core/search/predecessor.hpp"
-#include "core/search/start_distance.hpp"
 
 namespace rtg::search {
 
-Coverage::Coverage(const tasks::Task& task)
-    : task_(task), metric_(task.scene), group_roots_(moving_group_roots(task.scene)) {}
+Coverage::Coverage(const tasks::Task& task) : group_roots_(moving_group_roots(task.scene)) {}
 
 /// Returns whether `t` moves two objects that are not connected by joints.
 bool Coverage::moves_several(const Transition& t) const {
@@ -27,15 +25,13 @@ void Coverage::add(const Transition& t) {
   ++by_source_[static_cast<std::size_t>(t.source)];
   contacts_ += objects_moved(t.poses, t.next) >= 1;
   multi_body_ += moves_several(t);
-  start_region_ += in_start_region(task_, metric_, t.poses);
   states_.insert(reverse::key_of(t.poses, 0));
 }
 
 Coverage::Figures Coverage::figures() const {
   const double count = static_cast<double>(std::max(transitions_, 1L));
   const double states = static_cast<double>(std::max(states_.size(), std::size_t{1}));
-  return {transitions_,          by_source_,   contacts_ / count, multi_body_ / count,
-          transitions_ / states, start_region_};
+  return {transitions_, by_source_, contacts_ / count, multi_body_ / count, transitions_ / states};
 }
 
 }  // namespace rtg::search

@@ -5,7 +5,6 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/search/state_metric.hpp"
 #include "core/search/transition.hpp"
 #include "core/tasks/task.hpp"
 
@@ -17,10 +16,9 @@ class Coverage {
   struct Figures {
     long transitions = 0;
     std::array<long, kSources.size()> by_source{};
-    double contact_share = 0.0;         // share that moves an object by more than kMoved
-    double multi_body_share = 0.0;      // share that moves several objects not connected by joints
-    double headings_per_state = 0.0;    // transitions per distinct state
-    long start_region_transitions = 0;  // that begin in_start_region()
+    double contact_share = 0.0;       // share that moves an object by more than kMoved
+    double multi_body_share = 0.0;    // share that moves several objects not connected by joints
+    double headings_per_state = 0.0;  // transitions per distinct state
 
     long of(Source source) const { return by_source[static_cast<std::size_t>(source)]; }
   };
@@ -34,10 +32,8 @@ class Coverage {
  private:
   bool moves_several(const Transition& t) const;
 
-  const tasks::Task& task_;
-  StateMetric metric_;
   std::vector<std::size_t> group_roots_;  // moving_group_roots() of the scene
-  long transitions_ = 0, contacts_ = 0, multi_body_ = 0, start_region_ = 0;
+  long transitions_ = 0, contacts_ = 0, multi_body_ = 0;
   std::array<long, kSources.size()> by_source_{};
   std::unordered_set<std::uint64_t> states_;  // key_of() of each
 };

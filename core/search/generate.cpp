@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/search/beam_search.hpp"
 #include "core/search/forward_search.hpp"
@@ -14,27 +17,40 @@
 namespace rtg::search {
 namespace {
 
+/// Returns by body how near its centre comes to its place in `start` in any of the nodes [m].
+std::vector<double> least_distances(std::span<const Node> nodes, const Poses& start) {
+  std::vector<double> least(start.size(), std::numeric_limits<double>::infinity());
+  for (const Node& n : nodes)
+    for (std::size_t b = 0; b < start.size(); ++b)
+      least[b] = std::min(least[b], (n.poses[b].position() - start[b].position()).norm());
+  return least;
+}
+
 /// Runs Algorithm 1 once: draws a start and grows a tree from goal states towards it. Ends after
 /// run.layers() layers. Ends earlier if config.patience layers in a row come no nearer to the
 /// start.
 void grow_tree(Generation& run, int number) {
   Rng rng = run.attempt_rng(number);
-  const int tree = run.attempts + number;
+  const std::string phase = "tree " + std::to_string(run.attempts + number + 1);
   const Poses target = run.draw_start(rng);
   BeamSearch search(run.task, run.config, target, rng.word());
   search.make_roots(run.replay(Stage::kGoals), run.stats);
+  if (search.nodes().empty()) return;
+  run.starts.push_back({target});
   double best = search.min_start_distance();
   int patience = run.config.patience;
   for (int layer = 1; layer <= run.layers() && patience > 0; ++layer) {
     if (search.beam().empty() || run.data.full() || run.cancelled()) break;
     run.data.store(search.grow(run.seams.solve, run.seams.replay, run.stats),
                    run.replay(Stage::kBranches));
-    run.show("tree " + std::to_string(tree + 1), layer, run.layers());
+    run.starts.back().depth = search.start_depth();
+    run.show(phase, layer, run.layers());
     const double nearest = search.min_start_distance();
     patience = nearest < best ? run.config.patience : patience - 1;
     best = std::min(best, nearest);
   }
-  for (const Node& n : search.nodes()) run.nodes.push_back({n.poses, n.depth, tree});
+  run.starts.back().away = least_distances(search.nodes(), target);
+  for (const Node& n : search.nodes()) run.nodes.push_back({n.poses, n.depth});
 }
 
 }  // namespace
@@ -57,7 +73,10 @@ GenerationReport generate(const tasks::Task& task, const SearchConfig& config, s
     }
   });
   GenerationReport report{run.data.coverage().figures(), std::move(run.stats)};
-  set_nodes(report, task, std::move(run.nodes));
+  if (report.stats.undrawn_goals > 0)
+    report.undrawn_reason = main_reason(report.stats.goal_refusals, task.scene);
+  report.starts = std::move(run.starts);
+  report.nodes = std::move(run.nodes);
   set_shortfalls(report, config);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   report.generate_wall_s = wall.count();

@@ -19,6 +19,7 @@ struct Generation {
   std::uint64_t seed;
   const GenerationSeams& seams;
   SearchStats stats = {};
+  std::vector<TreeStart> starts = {};  // by tree
   std::vector<ReportNode> nodes = {};  // of all trees
   DataSet data{task, config, seed, seams.store};
   int shard = 0;     // that is being searched
@@ -73,7 +74,7 @@ struct Generation {
     if (!seams.progress) return;
     const Coverage::Figures c = data.coverage().figures();
     seams.progress({phase, layer, last, c.transitions, config.transitions, c.contact_share,
-                    c.start_region_transitions});
+                    starts_reached(starts)});
   }
 };
 

@@ -4,37 +4,52 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "core/math/quantile.hpp"
 #include "core/reverse/problem/solve_status.hpp"
-#include "core/search/start_distance.hpp"
 
 namespace rtg::search {
 
-void set_nodes(GenerationReport& report, const tasks::Task& task, std::vector<ReportNode> nodes) {
-  const StateMetric metric(task.scene);
-  for (const ReportNode& n : nodes) {
-    report.trees = std::max(report.trees, n.tree + 1);
-    if (n.depth == 0 || !in_start_region(task, metric, n.poses)) continue;
-    int& least = report.start_region_depth;
-    least = least < 0 ? n.depth : std::min(least, n.depth);
-  }
-  report.nodes = std::move(nodes);
-  if (report.stats.undrawn_goals > 0)
-    report.undrawn_reason = main_reason(report.stats.goal_refusals, task.scene);
+long starts_reached(std::span<const TreeStart> starts) {
+  return std::ranges::count_if(starts, &TreeStart::reached);
 }
 
 namespace {
 
+/// Returns `value` if it is `known`, else null.
+template <class Value>
+nlohmann::ordered_json or_null(bool known, Value value) {
+  return known ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+nlohmann::ordered_json to_json(const Poses& poses) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const Pose& p : poses) out.push_back({p.x, p.y, p.theta});
+  return out;
+}
+
 nlohmann::ordered_json to_json(std::span<const ReportNode> nodes) {
   nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (const ReportNode& n : nodes) {
-    nlohmann::ordered_json poses = nlohmann::ordered_json::array();
-    for (const Pose& p : n.poses) poses.push_back({p.x, p.y, p.theta});
-    out.push_back({{"poses", poses}, {"depth", n.depth}});
-  }
+  for (const ReportNode& n : nodes)
+    out.push_back({{"poses", to_json(n.poses)}, {"depth", n.depth}});
   return out;
+}
+
+nlohmann::ordered_json to_json(std::span<const TreeStart> starts) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const TreeStart& s : starts)
+    out.push_back(
+        {{"poses", to_json(s.poses)}, {"depth", or_null(s.reached(), s.depth)}, {"away", s.away}});
+  return out;
+}
+
+/// Returns the median of the depths of the starts that were reached; null if none was.
+nlohmann::ordered_json median_depth(std::span<const TreeStart> starts) {
+  std::vector<int> depths;
+  for (const TreeStart& s : starts)
+    if (s.reached()) depths.push_back(s.depth);
+  return or_null(!depths.empty(), quantile(depths, 0.5));
 }
 
 }  // namespace
@@ -60,8 +75,7 @@ std::string to_json(const GenerationReport& r) {
   const SearchStats& stats = r.stats;
   // Returns the quantile, or null if the run solved for no reverse steps.
   const auto of_search = [&stats](const auto& values, double share) {
-    return stats.candidates > 0 ? nlohmann::ordered_json(quantile(values, share))
-                                : nlohmann::ordered_json();
+    return or_null(stats.candidates > 0, quantile(values, share));
   };
   nlohmann::ordered_json out = {{"transitions", c.transitions},
                                 {"tree_transitions", c.of(Source::kTree)},
@@ -69,9 +83,9 @@ std::string to_json(const GenerationReport& r) {
                                 {"contact_share", c.contact_share},
                                 {"multi_body_share", c.multi_body_share},
                                 {"headings_per_state", c.headings_per_state},
-                                {"start_region_transitions", c.start_region_transitions},
-                                {"start_region_depth", r.start_region_depth},
-                                {"trees", r.trees},
+                                {"trees", r.starts.size()},
+                                {"starts_reached", starts_reached(r.starts)},
+                                {"start_depth", median_depth(r.starts)},
                                 {"candidates", stats.candidates}};
   for (std::size_t k = 0; k < stats.statuses.size(); ++k)
     out[std::string(name(static_cast<reverse::SolveStatus>(k)))] = stats.statuses[k];
@@ -106,6 +120,7 @@ std::string to_json(const GenerationReport& r) {
   out["iterations"] = stats.iterations;
   out["pushing_iterations"] = stats.pushing_iterations;
   out["replay_gaps"] = stats.gaps;
+  out["starts"] = to_json(r.starts);
   out["nodes"] = to_json(r.nodes);
   return out.dump();
 }

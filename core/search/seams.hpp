@@ -55,7 +55,7 @@ struct Progress {
   long transitions = 0;  // stored so far
   long target = 0;       // to be stored in all
   double contact_share = 0.0;
-  long start_region = 0;  // transitions so far that begin in the start region
+  long starts_reached = 0;  // starts_reached() by the trees so far
 };
 
 /// The functions that generate() receives from its caller.

@@ -134,7 +134,7 @@ void CoordinatorNode::publish_progress() {
   message.transitions = stream.rows;
   message.target = options_.target;
   message.contact_share = progress.contact_share;
-  message.start_region = progress.start_region;
+  message.starts_reached = progress.starts_reached;
   message.workers = reverse.workers;
   message.jobs_open = static_cast<std::int32_t>(reverse.open);
   message.consumers = stream.consumers;

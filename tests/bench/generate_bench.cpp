@@ -55,8 +55,9 @@ bool read(std::span<char* const> arguments, Options& options) {
 }
 
 void print_progress(const search::Progress& p) {
-  std::fprintf(stderr, "%-10s layer %2d  %6ld of %6ld  contact %.2f  start region %ld\n",
-               p.phase.c_str(), p.layer, p.transitions, p.target, p.contact_share, p.start_region);
+  std::fprintf(stderr, "%-10s layer %2d  %6ld of %6ld  contact %.2f  starts reached %ld\n",
+               p.phase.c_str(), p.layer, p.transitions, p.target, p.contact_share,
+               p.starts_reached);
 }
 
 void run(const Options& options) {

@@ -23,7 +23,7 @@ TEST(Fingerprint, IsPinned) {
   EXPECT_EQ(fingerprint<transition_batch_t>(), "afecb8d7987eaaf4");
   EXPECT_EQ(fingerprint<stream_tail_t>(), "2ddf946a6a78351a");
   EXPECT_EQ(fingerprint<stream_ack_t>(), "fdfa539ba7fa5dc5");
-  EXPECT_EQ(fingerprint<search_progress_t>(), "24e19a1b62cd22f3");
+  EXPECT_EQ(fingerprint<search_progress_t>(), "51d8b1e2e943c17c");
   EXPECT_EQ(fingerprint<node_status_t>(), "c2dc4832992b3d39");
 }
 

@@ -37,7 +37,7 @@ void report_progress(const nb::object& progress, const search::Progress& p) {
   line["transitions"] = p.transitions;
   line["target"] = p.target;
   line["contact_share"] = p.contact_share;
-  line["start_region"] = p.start_region;
+  line["starts_reached"] = p.starts_reached;
   progress(line);
 }
 
@@ -106,7 +106,7 @@ void bind_generation(nb::module_& module) {
 
 Calls store(poses, action, next_poses, success, source) with the transitions in sequence order.
 Calls progress() after each layer of the search, with a dictionary of "phase", "layer", "depth",
-"transitions", "target", "contact_share" and "start_region". An exception of either function
+"transitions", "target", "contact_share" and "starts_reached". An exception of either function
 ends the generation and is raised.
 
 The answers of the simulators are added to the file `journal`, if one is given, as they come. A

@@ -66,6 +66,26 @@ TEST_F(BeamSearchStartTest, AnObjectInPlaceIsWhereSomeStartHasIt) {
   EXPECT_GT(x.size(), found.size() / 2) << "each node has a start of its own";
 }
 
+TEST_F(BeamSearchStartTest, TheStartDepthIsTheLeastOfANodeWithAllObjectsInPlaceButForGoals) {
+  task.start = {{0, -5, 0}, {-1.3, 0, 0}, {0, 0, 0}, {4.25, 0, 0}};
+  Poses target = task.start;
+  target[3].y += 0.5;  // another start than the task's
+  BeamSearch search(task, config, target, 1);
+  search.make_roots(replay, stats);
+  EXPECT_EQ(search.start_depth(), -1);
+  for (int layer = 0; layer < 20; ++layer) search.grow(solve, replay, stats);
+  std::vector<int> depths;
+  for (const Node& n : search.nodes()) {
+    bool near = n.depth > 0;
+    for (std::size_t k = 1; k < n.poses.size(); ++k)
+      near = near && (n.poses[k].position() - target[k].position()).norm() <= 0.4;
+    if (near) depths.push_back(n.depth);
+  }
+  ASSERT_FALSE(depths.empty());
+  EXPECT_EQ(search.start_depth(), std::ranges::min(depths));
+  EXPECT_LT(std::ranges::min(depths), std::ranges::max(depths));
+}
+
 TEST_F(BeamSearchStartTest, WithoutJitterItIsWhereTheTargetHasIt) {
   task.start_jitter = 0.0;
   const std::vector<Pose> found = in_place();

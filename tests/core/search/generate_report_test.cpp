@@ -112,14 +112,6 @@ struct GenerationReportTest : ::testing::Test {
   }
   const NotingWorld& world = noted().world;
   const GenerationReport& report = noted().report;
-
-  bool in_the_start_region(const Poses& poses) const {
-    for (std::size_t k = 1; k < poses.size(); ++k) {
-      const Pose &at = poses[k], &start = world.task.start[k];
-      if (std::hypot(at.x - start.x, at.y - start.y) > 0.4) return false;
-    }
-    return true;
-  }
 };
 
 TEST_F(GenerationReportTest, GapsAreThoseBetweenWhatWasSolvedForAndWhatReplayed) {
@@ -163,24 +155,33 @@ TEST_F(GenerationReportTest, EachStageHasTheTimesOfItsBatches) {
 }
 
 TEST_F(GenerationReportTest, CoverageIsThatOfTheStoredTransitions) {
-  long region = 0, trees = 0;
-  for (const Transition& t : world.stored) {
-    region += in_the_start_region(t.poses);
-    trees += t.source == Source::kTree;
-  }
-  EXPECT_EQ(report.coverage.start_region_transitions, region);
+  long trees = 0;
+  for (const Transition& t : world.stored) trees += t.source == Source::kTree;
   EXPECT_EQ(report.coverage.of(Source::kTree), trees);
   EXPECT_EQ(report.coverage.of(Source::kBranch), 1500 - trees);
-  EXPECT_GT(region, 0);
 }
 
-TEST_F(GenerationReportTest, StartRegionDepthIsTheLeastOfANodeThere) {
-  std::vector<int> depths;
-  for (const ReportNode& n : report.nodes)
-    if (n.depth > 0 && in_the_start_region(n.poses)) depths.push_back(n.depth);
-  ASSERT_FALSE(depths.empty());
-  EXPECT_EQ(report.start_region_depth, std::ranges::min(depths));
-  EXPECT_NE(depths.back(), std::ranges::min(depths)) << "the last one could be taken for the least";
+double distance(const Pose& a, const Pose& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+TEST_F(GenerationReportTest, EachTreeTellsHowNearItsStartItCame) {
+  const auto has_node = [&](auto condition) {
+    return std::ranges::any_of(report.nodes, condition);
+  };
+  for (const TreeStart& start : report.starts) {
+    for (std::size_t b = 0; b < start.poses.size(); ++b)
+      EXPECT_TRUE(has_node([&](const ReportNode& n) {
+        return distance(n.poses[b], start.poses[b]) == start.away[b];
+      })) << b;
+    if (!start.reached()) continue;
+    EXPECT_GT(start.depth, 0);
+    EXPECT_TRUE(has_node([&](const ReportNode& n) {
+      bool near = n.depth == start.depth;
+      for (std::size_t b = 1; b < start.poses.size(); ++b)
+        near = near && distance(n.poses[b], start.poses[b]) <= 0.4;
+      return near;
+    }));
+  }
+  EXPECT_GT(starts_reached(report.starts), 0);
 }
 
 TEST_F(GenerationReportTest, HasEveryNodeThatWasExpanded) {

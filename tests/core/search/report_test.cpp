@@ -6,17 +6,14 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/gathering.hpp"
-
 namespace rtg::search {
 namespace {
 
 /// A report whose numbers all differ and are exact in single precision.
 GenerationReport filled() {
   GenerationReport r;
-  r.coverage = {1, {70, 71, 72, 73}, 0.25, 0.125, 4.5, 2};
-  r.start_region_depth = 5;
-  r.trees = 3;
+  r.coverage = {1, {70, 71, 72, 73}, 0.25, 0.125, 4.5};
+  r.starts = {{{{0.25, 0.75, 1.5}}, 5, {0.5, 1.25}}, {{{-1.0, 2.5, 0.0}}}};
   r.stats.candidates = 6;
   for (std::size_t k = 0; k < r.stats.statuses.size(); ++k)
     r.stats.statuses[k] = 10 + static_cast<long>(k);
@@ -37,7 +34,7 @@ GenerationReport filled() {
   r.generate_wall_s = 42.5;
   r.generate_cpu_s = 43.5;
   r.shortfalls = {"too few", "none moves"};
-  r.nodes = {{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 7, 8}, {{{-0.5, 0.0, 0.5}}, 9, 50}};
+  r.nodes = {{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, 7}, {{{-0.5, 0.0, 0.5}}, 9}};
   return r;
 }
 
@@ -45,8 +42,8 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
   EXPECT_EQ(
       to_json(filled()),
       R"({"transitions":1,"tree_transitions":70,"branch_transitions":71,"contact_share":0.25,)"
-      R"("multi_body_share":0.125,"headings_per_state":4.5,"start_region_transitions":2,)"
-      R"("start_region_depth":5,"trees":3,"candidates":6,)"
+      R"("multi_body_share":0.125,"headings_per_state":4.5,)"
+      R"("trees":2,"starts_reached":1,"start_depth":5.0,"candidates":6,)"
       R"("converged":10,"acceptable":11,"pruned":12,"infeasible":13,"iteration_limit":14,)"
       R"("line_search_failed":15,"singular":16,"non_finite":17,)"
       R"("illegal_starts":20,"goal_draws":27,"undrawn_goals":25,)"
@@ -62,7 +59,9 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
       R"("rows_sha256":"ab01",)"
       R"("shortfalls":["too few","none moves"],)"
       R"("iterations":[31,29,30],"pushing_iterations":[32,35,33,34],)"
-      R"("replay_gaps":[0.0625,0.03125,0.375],"nodes":[)"
+      R"("replay_gaps":[0.0625,0.03125,0.375],"starts":[)"
+      R"({"poses":[[0.25,0.75,1.5]],"depth":5,"away":[0.5,1.25]},)"
+      R"({"poses":[[-1.0,2.5,0.0]],"depth":null,"away":[]}],"nodes":[)"
       R"({"poses":[[1.0,2.0,3.0],[4.0,5.0,6.0]],"depth":7},)"
       R"({"poses":[[-0.5,0.0,0.5]],"depth":9}]})");
 }
@@ -77,17 +76,12 @@ TEST(Report, WithoutReverseStepsSaysNothingOfThem) {
   EXPECT_NE(json.find(R"("contact_share":0.25,)"), std::string::npos);
 }
 
-TEST(Report, OfNodesCountsTreesAndTheLeastDepthInTheStartRegionButForGoals) {
-  const tasks::Task task = testing::gathering();
-  Poses elsewhere = task.start;
-  elsewhere[1].x += 2.0;
+TEST(Report, TheDepthOfStartsIsTheMedianOfThoseThatWereReached) {
   GenerationReport report;
-  set_nodes(report, task, {{task.start, 0, 0}, {elsewhere, 3, 0}});
-  EXPECT_EQ(report.start_region_depth, -1);
-  set_nodes(report, task,
-            {{task.start, 0, 0}, {elsewhere, 3, 0}, {task.start, 7, 1}, {task.start, 5, 2}});
-  EXPECT_EQ(report.start_region_depth, 5);
-  EXPECT_EQ(report.trees, 3);
+  report.starts = {{{}, 30}, {{}, -1}, {{}, 4}, {{}, 7}, {{}, -1}};
+  EXPECT_EQ(starts_reached(report.starts), 3);
+  EXPECT_NE(to_json(report).find(R"("trees":5,"starts_reached":3,"start_depth":7.0,)"),
+            std::string::npos);
 }
 
 TEST(Report, TellsThatNoStepMovesAnObject) {
@@ -133,9 +127,9 @@ TEST(Report, TellsThatFewerTransitionsWereFoundThanAskedFor) {
 
 TEST(Report, OfNothingHasEmptyListsAndNoDepth) {
   const std::string text = to_json({});
-  EXPECT_NE(text.find(R"("start_region_depth":-1,)"), std::string::npos);
-  EXPECT_TRUE(
-      text.ends_with(R"("iterations":[],"pushing_iterations":[],"replay_gaps":[],"nodes":[]})"));
+  EXPECT_NE(text.find(R"("trees":0,"starts_reached":0,"start_depth":null,)"), std::string::npos);
+  EXPECT_TRUE(text.ends_with(
+      R"("iterations":[],"pushing_iterations":[],"replay_gaps":[],"starts":[],"nodes":[]})"));
 }
 
 }  // namespace

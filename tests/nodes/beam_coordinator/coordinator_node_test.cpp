@@ -195,7 +195,7 @@ TEST(CoordinatorNode, SaysWhereItStandsAndThatItLeaves) {
   EXPECT_EQ(heard[0].depth, 24);
   EXPECT_EQ(heard[0].transitions, 0) << "none is streamed yet";
   EXPECT_EQ(heard[0].contact_share, 0.25);
-  EXPECT_EQ(heard[0].start_region, 7);
+  EXPECT_EQ(heard[0].starts_reached, 7);
   EXPECT_EQ(heard[0].target, 10);
   EXPECT_EQ(heard[0].leaving, 0);
   EXPECT_EQ(heard.back().phase, "finished");

@@ -25,7 +25,7 @@ def status(pid=7, counters=(), **fields):
 
 
 def progress(leaving=0, run=1, phase="sealed", **fields):
-    zero = ("layer", "depth", "transitions", "target", "contact_share", "start_region", "workers")
+    zero = ("layer", "depth", "transitions", "target", "contact_share", "starts_reached", "workers")
     zero += ("jobs_open", "consumers", "slowest_cursor")
     fields = {**dict.fromkeys(zero, 0), **fields}
     message = SimpleNamespace(run=run, phase=phase, leaving=leaving, **fields)

@@ -53,8 +53,6 @@ def summary_of(seed: int) -> dict[str, Any]:
         "tree_transitions": 24_000,
         "branch_transitions": 96_000,
         "headings_per_state": 4.9,
-        "start_region_transitions": 300,
-        "start_region_depth": 14,
         "trees": 12,
         "q_rank_correlation": 0.75,
         "q_error": 0.02,

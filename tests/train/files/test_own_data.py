@@ -150,7 +150,9 @@ def test_figures_are_those_of_a_task_of_any_size(generated):
 
 
 def test_a_run_stores_them_sealed_and_tells_of_their_file(tmp_path, generated):
-    rows = generated[0]
+    poses = generated[0].poses.copy()
+    poses[:2] = TASK.start
+    rows = generated[0]._replace(poses=poses)
     own_data.store(tmp_path, CONFIG, OwnData(rows, ORIGIN))
     stored = dataset.read(tmp_path / "transitions.npz", TASK)
     assert np.array_equal(stored.poses, rows.poses)
@@ -159,7 +161,7 @@ def test_a_run_stores_them_sealed_and_tells_of_their_file(tmp_path, generated):
     assert made_by["data"] == ORIGIN and "core_sha256" not in made_by
     told = run_folder.read_json(tmp_path / "generation.json")["data"]
     successes = int(rows.terminated.sum())
-    assert told == {**ORIGIN, "transitions": 300, "successes": successes}
+    assert told == {**ORIGIN, "transitions": 300, "successes": successes, "at_start": 2}
     assert own_data.words(told) == (
         f"300 transitions of mine.npz (SHA-256 abc…), {successes} of which succeed"
     )

@@ -58,7 +58,7 @@ def test_the_summary_of_a_run_without_learner_has_nulls_in_its_place(tmp_path):
 def test_the_summary_has_the_keys_that_are_promised():
     contract = """task, method, seed, mode, workers, transitions, tree_transitions,
     branch_transitions, contact_share, multi_body_share, headings_per_state,
-    start_region_transitions, start_region_depth, trees, replays, candidates, pruned, converged,
+    trees, starts_reached, start_depth, replays, candidates, pruned, converged,
     iterations_median, iterations_p90, replay_gap_median, replay_gap_p90, reverse_cpu_s,
     replay_cpu_s, generate_cpu_s, generate_wall_s, train_cpu_s, train_wall_s, interactions,
     online_successes, success_rate, episode_length_mean, episode_return_mean, q_rank_correlation,

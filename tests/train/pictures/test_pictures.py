@@ -240,14 +240,14 @@ def test_curves_with_gaps_and_empty_samples_can_be_drawn(tmp_path):
     report = {"replay_gaps": [0.0, 0.02], "replay_gap_median": 0.01, "replay_gap_p90": 0.02}
     plots.replay_gap(tmp_path / "gap.png", "a run", report)
     none = np.zeros((0, 4, 3))
-    plots.coverage(tmp_path / "coverage.png", "a run", TASK, none, np.zeros(0), {})
+    plots.coverage(tmp_path / "coverage.png", "a run", TASK, none, np.zeros(0), none, {})
     for file in tmp_path.iterdir():
         with Image.open(file) as picture:
             assert len(picture.convert("RGB").getcolors(1 << 24)) > 20
 
 
 def test_the_coverage_of_a_body_bears_its_name(figures):
-    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), {})
+    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), START, {})
     titles = [axis.get_title(loc="left") for axis in figures[0].axes]
     assert titles[:3] == ["box1", "box2", "box3"]
 
@@ -255,7 +255,7 @@ def test_the_coverage_of_a_body_bears_its_name(figures):
 def test_each_dot_of_the_coverage_has_the_colour_of_its_depth(figures):
     poses = np.repeat(START, 3, axis=0)
     poses[:, :, 0] = np.array([1.0, 2.0, 3.0])[:, None]
-    plots.coverage(Path("coverage.png"), "a run", TASK, poses, np.array([7.0, 3.0, 5.0]), {})
+    plots.coverage(Path("coverage.png"), "a run", TASK, poses, np.array([7.0, 3.0, 5.0]), START, {})
     for axis in figures[0].axes[:3]:
         (dots,) = (one for one in axis.collections if one.get_array() is not None)
         found = dict(zip(dots.get_offsets()[:, 0], dots.get_array(), strict=True))
@@ -263,16 +263,26 @@ def test_each_dot_of_the_coverage_has_the_colour_of_its_depth(figures):
         assert list(dots.get_array()) == [3.0, 5.0, 7.0]  # the deepest are drawn last
 
 
+def test_each_start_that_a_tree_grew_towards_has_a_cross(figures):
+    starts = np.repeat(START, 2, axis=0)
+    starts[1, 1:, 0] += 0.5
+    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), starts, {})
+    for body, axis in enumerate(figures[0].axes[:3], start=1):
+        (crosses,) = (one for one in axis.collections if one.get_array() is None)
+        assert np.array_equal(crosses.get_offsets(), starts[:, body, :2])
+    assert "crosses: " in figures[0].get_supxlabel()
+
+
 def test_the_region_in_which_an_object_starts_is_in_its_panel_alone(figures):
     ring = np.array([[1.0, 2.0], [3.0, 2.0], [3.0, 4.0]])
-    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), {2: ring})
+    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), START, {2: ring})
     dashed = [
         [line.get_xydata() for line in axis.get_lines() if line.is_dashed()]
         for axis in figures[0].axes[:3]
     ]
     assert dashed[0] == dashed[2] == [] and np.array_equal(dashed[1][0][[0, 1, 2]], ring)
     assert "dashed: where the centre" in figures[0].get_supxlabel()
-    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), {})
+    plots.coverage(Path("coverage.png"), "a run", TASK, START, np.zeros(1), START, {})
     assert "dashed" not in figures[1].get_supxlabel()
 
 

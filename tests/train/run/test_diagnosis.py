@@ -14,8 +14,7 @@ GOOD: dict[str, Any] = {
     "candidates": 10_000,
     "pruned": 4_000,
     "converged": 5_500,
-    "start_region_depth": 12,
-    "start_region_transitions": 5_000,
+    "starts_reached": 2,
     "success_rate": 0.99,
     "q_rank_correlation": 0.8,
 }
@@ -29,22 +28,32 @@ def node(depth: int, **moved: tuple[float, float]) -> dict[str, Any]:
     return {"poses": poses.tolist(), "depth": depth}
 
 
+def towards(*away: float) -> dict[str, Any]:
+    """A start that no tree reached, with the least distances of the robot and the boxes."""
+    return {"poses": CONFIG.task.start.tolist(), "depth": None, "away": list(away)}
+
+
 NODES = [node(3, box1=(3.0, 0.0), box2=(0.3, 0.0)), node(9, box1=(3.0, 0.0), box2=(2.0, 0.0))]
+STARTS = [towards(0.1, 5.0, 0.3, 0.0), towards(0.2, 3.0, 0.7, 0.05)]
+
+
+def found(summary: dict[str, Any], config: _core.Config = CONFIG, **more: Any) -> str | None:
+    return bottleneck(config, summary, {**summary, "nodes": NODES, "starts": STARTS, **more})
 
 
 def said(**figures: Any) -> str:
-    words = bottleneck(CONFIG, {**GOOD, "success_rate": None, **figures}, NODES)
+    words = found({**GOOD, "success_rate": None, **figures})
     assert words is not None and words.startswith("bottleneck: ")
     return words
 
 
 def test_nothing_is_said_of_a_run_that_is_well_or_has_no_trees() -> None:
-    assert bottleneck(CONFIG, GOOD, NODES) is None
-    assert bottleneck(CONFIG, {**GOOD, "start_region_depth": -1}, NODES) is None
-    assert bottleneck(CONFIG, {**GOOD, "success_rate": None}, NODES) is None  # --no-train
+    assert found(GOOD) is None
+    assert found({**GOOD, "starts_reached": 0}) is None
+    assert found({**GOOD, "success_rate": None}) is None  # --no-train
     walks = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["run.method=ddqn_random"])
-    bad = {**GOOD, "trees": 0, "start_region_depth": -1, "success_rate": 0.0}
-    assert bottleneck(walks, bad, []) is None
+    bad = {**GOOD, "trees": 0, "starts_reached": 0, "success_rate": 0.0}
+    assert found(bad, walks, nodes=[], starts=[]) is None
 
 
 def test_of_goal_states_the_draws_in_vain_are_told() -> None:
@@ -53,59 +62,24 @@ def test_of_goal_states_the_draws_in_vain_are_told() -> None:
 
 
 def test_few_solved_pushes_are_the_first_suspect() -> None:
-    assert "reverse solves: 2,000 of 6,000 found a push" in said(
-        converged=2_000, start_region_depth=-1
-    )
+    assert "reverse solves: 2,000 of 6,000 found a push" in said(converged=2_000, starts_reached=0)
 
 
 def test_of_a_start_that_is_not_reached_each_object_is_told() -> None:
-    words = said(start_region_depth=-1)
+    words = said(starts_reached=0)
+    assert "no tree does (3 grew, starts_reached is 0)" in words
     assert "'box1' 3 m (in one place in all states), 'box2' 0.3 m, 'box3' 0 m" in words
     assert "the deepest has 9 actions" in words and "search.patience, 4 now" in words
 
 
-def of_ranges(text: str, *places: dict[int, tuple[float, float]]) -> str:
-    """What is said of the task of `text` with nodes at `places` [m], by body."""
-    config = _core.Config.from_text(text)
-    nodes = []
-    for place in places:
-        poses = np.array(config.task.start)
-        for body, at in place.items():
-            poses[body, :2] = np.multiply(at, config.task.metre)
-        nodes.append({"poses": poses.tolist(), "depth": 1})
-    words = bottleneck(config, {**GOOD, "success_rate": None, "start_region_depth": -1}, nodes)
-    assert words is not None
-    return words
-
-
-def test_an_object_that_starts_in_ranges_is_as_far_off_as_its_region() -> None:
-    """Push-T's T starts with x and y from -5 to 5 m, and one metre is 1.6 units of poses."""
-    text = (paths.CONFIG / "push_t.yaml").read_text()
-    assert "'t' 2 m (in one place in all states);" in of_ranges(text, {1: (1.0, -7.0)})
-    assert "'t' 0 m;" in of_ranges(text, {1: (7.0, 0.0)}, {1: (-4.9, 4.9)})
-
-
-@pytest.mark.parametrize(
-    ("start", "away"),
-    [
-        ("{disc: {centre: [-3, 1], radius: 1}}", 3.0),
-        ("{polygon: [[-4, 0], [-2, 0], [-2, 2], [-4, 2]]}", 3.0),
-        ("{polygon: [[-4, -1], [-2, 1], [-4, 3]]}", 2.1),  # 3 / √2 from an edge
-    ],
-)
-def test_regions_of_starts_may_have_any_shape(start: str, away: float) -> None:
-    text = (paths.CONFIG / "gathering.yaml").read_text()
-    ranged = text.replace("start: [-3.0, 1.13, 0.2]", f"start: {{in: {start}}}")
-    assert f"'box1' {away:.2g} m (in one" in of_ranges(ranged, {1: (1.0, 1.0)})
-    assert "'box1' 0 m, 'box2' 0 m" in of_ranges(ranged, {1: (-2.5, 1.0)})
-
-
-def test_nothing_is_said_of_bodies_that_hang_on_one_with_ranges() -> None:
-    """Where they start depends on the draw."""
-    text = (paths.CONFIG / "art_manip.yaml").read_text()
-    ranged = text.replace("[-3.6, 0.0, 0.0]", "{x: [-4.6, -2.6], y: [-1, 1], theta: 0}")
-    words = of_ranges(ranged, {1: (-3.0, 5.0)})
-    assert "nearest to their starts came 'link1' 4 m (in one place in all states); try" in words
+def test_how_near_an_object_came_is_told_in_metres() -> None:
+    """One metre of push_t is 1.6 units of poses."""
+    config = _core.Config.from_file(paths.CONFIG / "push_t.yaml")
+    node = {"poses": config.task.start.tolist(), "depth": 1}
+    start = {"poses": config.task.start.tolist(), "depth": None, "away": [0.0, 3.2]}
+    summary = {**GOOD, "success_rate": None, "starts_reached": 0}
+    words = found(summary, config, nodes=[node], starts=[start])
+    assert words is not None and "came 't' 2 m (in one place in all states);" in words
 
 
 @pytest.mark.parametrize(
@@ -117,14 +91,13 @@ def test_nothing_is_said_of_bodies_that_hang_on_one_with_ranges() -> None:
     ],
 )
 def test_the_advice_is_about_what_ended_the_trees(trees: int, depth: int, advice: str) -> None:
-    figures = {**GOOD, "start_region_depth": -1, "trees": trees, "success_rate": 0.1}
-    words = bottleneck(CONFIG, figures, [*NODES, node(depth)])
+    figures = {**GOOD, "starts_reached": 0, "trees": trees, "success_rate": 0.1}
+    words = found(figures, nodes=[*NODES, node(depth)])
     assert words is not None and advice in words
 
 
-def test_of_learning_coverage_comes_first_then_the_ranks_then_the_budget() -> None:
+def test_of_learning_the_ranks_come_first_then_the_budget() -> None:
     failed = {"success_rate": 0.4}
-    assert "coverage: 10 of 60,000" in said(**failed, start_region_transitions=10)
     assert "little better than by chance (0.20)" in said(**failed, q_rank_correlation=0.2)
     assert "train.interactions, 350,000 now" in said(**failed)
 
@@ -149,21 +122,21 @@ def test_more_gradient_steps_are_advised_only_where_there_are_few() -> None:
         "(train.gradient_steps, 1 now) or more interactions (train.interactions, 350,000 now)"
     )
     many = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["train.gradient_steps=4"])
-    assert bottleneck(many, {**GOOD, "success_rate": 0.4}, NODES) == (
+    assert found({**GOOD, "success_rate": 0.4}, many) == (
         "bottleneck: learning: success 0.40 at the end of the budget; try more interactions "
         "(train.interactions, 350,000 now)"
     )
 
 
 def test_of_own_data_other_data_are_advised_and_no_settings_of_a_search() -> None:
-    data = {"transitions": 60_000, "successes": 500}
+    data = {"transitions": 60_000, "successes": 500, "at_start": 5_000}
     own = {"data": data, "trees": None, "headings_per_state": 1.2, "success_rate": 0.4}
     words = said(**{**own, "data": {**data, "successes": 0}})
     assert words == "bottleneck: goal: none of 60,000 transitions reaches it; try data that do"
-    words = said(**own, start_region_transitions=10)
+    words = said(**{**own, "data": {**data, "at_start": 10}})
     assert words.endswith("10 of 60,000 transitions begin where episodes do; try data from there")
     words = said(**own, q_rank_correlation=0.2)
     assert "data with other headings from the same states (1.2 per state now)" in words
     assert "search." not in words
     assert "more gradient steps" in said(**own)
-    assert bottleneck(CONFIG, {**GOOD, **own, "success_rate": None}, []) is None  # --no-train
+    assert found({**GOOD, **own, "success_rate": None}) is None  # --no-train

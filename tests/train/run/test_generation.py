@@ -53,7 +53,8 @@ def test_the_report_of_the_search_itself_has_every_figure_of_the_summary(tmp_pat
     of_the_learner = {"train_wall_s", "interactions", "online_successes", "success_rate"}
     of_the_learner |= {"episode_length_mean", "episode_return_mean", "train_cpu_s"}
     of_the_learner |= {"q_rank_correlation", "q_error", "q_spread"}
-    assert {key for key in run_folder.SUMMARY_KEYS if summary[key] is None} == of_the_learner
+    unknown = {key for key in run_folder.SUMMARY_KEYS if summary[key] is None}
+    assert unknown == of_the_learner | {"start_depth"}  # no tree of so few transitions gets there
     assert summary["generate_wall_s"] > 0
 
 

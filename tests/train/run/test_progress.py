@@ -11,7 +11,7 @@ from rtg.run.run_state import RateMeter, RunState
 from rtg.run.time_left import TimeLeft, usual_rate
 
 GENERATING = RunState(
-    phase="round 1", layer=2, depth=24, transitions=1234, target=60000, contact_share=0.417
+    phase="tree 1", layer=2, depth=24, transitions=1234, target=60000, contact_share=0.417
 )
 TRAINING = replace(GENERATING, phase="finished", interactions=10_000, budget=350_000, rate=812.3)
 
@@ -26,12 +26,10 @@ def plain(*states):
 
 
 def test_elsewhere_there_is_one_line_per_layer_and_no_control_character():
-    lines = plain(GENERATING, GENERATING, replace(GENERATING, layer=3))
+    lines = plain(GENERATING, GENERATING, replace(GENERATING, layer=3, starts_reached=1))
     assert lines == [
-        "1,234 of 60,000 transitions: round 1, layer 2/24, contact share 0.42, "
-        "0 in the start region",
-        "1,234 of 60,000 transitions: round 1, layer 3/24, contact share 0.42, "
-        "0 in the start region",
+        "1,234 of 60,000 transitions: tree 1, layer 2/24, contact share 0.42",
+        "1,234 of 60,000 transitions: tree 1, layer 3/24, contact share 0.42, starts reached: 1",
     ]
 
 
@@ -47,7 +45,7 @@ def test_elsewhere_training_says_every_tenth_of_the_budget_and_every_evaluation(
 
 
 def test_elsewhere_the_last_line_of_each_half_says_that_the_results_are_to_come():
-    end = "0 in the start region, results to come"
+    end = "contact share 0.42, results to come"
     made = replace(GENERATING, phase="finished", transitions=60_000)
     (line,) = plain(made)
     assert line.endswith(end)

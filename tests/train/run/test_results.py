@@ -86,8 +86,8 @@ SUMMARY = {
     "candidates": 9000,
     "pruned": 3000,
     "converged": 5000,
-    "start_region_transitions": 200,
-    "start_region_depth": 9,
+    "starts_reached": 2,
+    "start_depth": 9.0,
     "success_rate": 0.98,
     "interactions": 20000,
     "train_wall_s": 60.0,
@@ -107,11 +107,17 @@ def test_of_the_data_and_of_q_the_words_say_what_predicts_learning():
 
 def test_what_falls_short_is_the_last_word_before_the_folder(tmp_path):
     plan = RunPlan(tmp_path, "x", config("run.method=ddqn_rtg"), False, False, ())
-    nodes = [{"poses": plan.config.task.start.tolist(), "depth": 3}]
-    (tmp_path / "generation.json").write_text(json.dumps({"nodes": nodes}))
-    far = {**SUMMARY, "start_region_depth": -1, "success_rate": None}
-    assert results.summary_text(plan, far).splitlines()[-2].startswith("bottleneck: reaching")
-    assert "bottleneck" not in results.summary_text(plan, SUMMARY)
+    poses = plan.config.task.start.tolist()
+    report = {
+        "nodes": [{"poses": poses, "depth": 3}],
+        "starts": [{"poses": poses, "depth": None, "away": [1.0] * len(poses)}],
+    }
+    untrained = {**SUMMARY, "success_rate": None}
+    for reached in (0, 2):
+        found = {**untrained, "starts_reached": reached}
+        (tmp_path / "generation.json").write_text(json.dumps({**found, **report}))
+        last = results.summary_text(plan, found).splitlines()[-2]
+        assert last.startswith("bottleneck: reaching the start") == (reached == 0)
 
 
 def test_goal_states_drawn_in_vain_are_told_once(tmp_path):
@@ -122,7 +128,9 @@ def test_goal_states_drawn_in_vain_are_told_once(tmp_path):
     words = "goal states: 20 of 50 draws met no goal: the robot found no place; "
     assert words in results.summary_text(plan, solved)
     assert words in results.generation_warning(plan)
-    said = results.summary_text(plan, {**solved, "trees": 0, "success_rate": 0.1})
+    rootless = {**solved, "trees": 0, "success_rate": 0.1}
+    (tmp_path / "generation.json").write_text(json.dumps(rootless))
+    said = results.summary_text(plan, rootless)
     assert said.count("goal states") == 1 and "(the robot found no place)" in said
 
 

@@ -44,6 +44,7 @@ def test_it_learns_from_them_and_goes_on_after_a_stop(file, tmp_path, capsys):
         "sha256": versions.digest(file),
         "transitions": 600,
         "successes": successes,
+        "at_start": 0,
     }
     assert summary["mode"] is None and summary["trees"] is None
     assert (summary["transitions"], summary["offline_transitions"]) == (600, 600)

@@ -32,7 +32,7 @@ def test_the_progress_of_the_coordinator_is_shown():
         transitions=500,
         target=49000,
         contact_share=0.25,
-        start_region=6,
+        starts_reached=6,
         workers=2,
     )
     bus.spin(0.0)
@@ -43,7 +43,7 @@ def test_the_progress_of_the_coordinator_is_shown():
         transitions=500,
         target=49000,
         contact_share=0.25,
-        start_region=6,
+        starts_reached=6,
         workers=2,
         interactions=8,
         budget=9,

@@ -197,7 +197,7 @@ def _progress_text(p: Any) -> str:
     phase = "generation over" if p.leaving else p.phase
     return (
         f"{phase}{layer}: {p.transitions:,} of {p.target:,} transitions, "
-        f"contact share {p.contact_share:.2f}, {p.start_region:,} in the start region, "
+        f"contact share {p.contact_share:.2f}, starts reached: {p.starts_reached:,}, "
         f"workers: {p.workers}, jobs open: {p.jobs_open}, "
         f"consumers: {p.consumers}, the slowest at {p.slowest_cursor:,}"
     )

@@ -29,8 +29,8 @@ def merged(reports: Sequence[Report]) -> Report:
         found[key] = _mean([report[key] for report in reports], counts)
     states = sum(report["transitions"] / report["headings_per_state"] for report in reports)
     found["headings_per_state"] = found["transitions"] / states
-    depths = [depth for report in reports if (depth := report["start_region_depth"]) >= 0]
-    found["start_region_depth"] = min(depths, default=-1)
+    depths = [start["depth"] for start in found["starts"] if start["depth"] is not None]
+    found["start_depth"] = _quantile(depths, 0.5) if depths else None
     for name, values in _QUANTILES.items():
         for key, share in ((f"{name}_median", 0.5), (f"{name}_p90", 0.9)):
             found[key] = _quantile(found[values], share) if found["candidates"] else None

@@ -53,11 +53,9 @@ environment steps of the learner per second, evaluations included."""
 _DATA = f"""\
 **transitions**: stored, in thousands; **tree rows**: of them steps found backwards and kept;
 **branches**: outcomes of other headings in the same states; **headings per state**: distinct ones
-stored from a state; **contact share**: of the transitions, those that move an object; **start
-region**: transitions that begin there; **trees**: how many were grown; **depth**: pushes of the
-shortest plan of a tree from the start region; **replay gap**: distance between the state in which
-the push of a reverse step was to end and that in which it ends in the simulator, mean over the
-bodies, in {replay_gaps.UNIT};
+stored from a state; **contact share**: of the transitions, those that move an object; **trees**:
+how many were grown; **replay gap**: distance between the state in which the push of a reverse step
+was to end and that in which it ends in the simulator, mean over the bodies, in {replay_gaps.UNIT};
 quantiles over simulated reverse steps; **rank correlation of Q**: Spearman's, of the
 learner's final Q with the simulator over all headings of a stored state, mean over some hundred
 states; **error**: root mean square of the difference; **spread**: standard deviation of the

@@ -222,11 +222,6 @@ def _summary_value(name: str) -> Callable[[RunResult], float | None]:
     return lambda run: run.summary.get(name)
 
 
-def _depth(run: RunResult) -> float | None:
-    depth = run.summary.get("start_region_depth") or -1
-    return None if depth < 0 else depth
-
-
 _per_second = _ratio("interactions", _count("train_wall_s"), 1.0)
 
 
@@ -250,9 +245,7 @@ _DATA_COLUMNS: tuple[tuple[str, Callable[[RunResult], float | None], str], ...] 
     ("branches", lambda run: thousands(run.summary.get("branch_transitions")), "count"),
     ("headings per state", _summary_value("headings_per_state"), ".1f"),
     ("contact share", _summary_value("contact_share"), ".2f"),
-    ("start region", _summary_value("start_region_transitions"), "count"),
     ("trees", _summary_value("trees"), "count"),
-    ("depth", _depth, ".0f"),
     ("replay gap, median [m]", _summary_value("replay_gap_median"), ".4f"),
     ("90th percentile [m]", _summary_value("replay_gap_p90"), ".4f"),
     ("rank correlation of Q", _summary_value("q_rank_correlation"), ".2f"),

@@ -149,7 +149,6 @@ def figures(task: _core.Task, rows: Rows) -> dict[str, Any]:
         "branch_transitions": int((rows.source == 1).sum()),
         "contact_share": float(moved.any(axis=1).mean()),
         "headings_per_state": count / int(numbered(rows.poses).max() + 1),
-        "start_region_transitions": int(task.in_start_region(rows.poses).sum()),
     }
 
 
@@ -161,12 +160,14 @@ def store(run: Path, config: _core.Config, own: OwnData) -> None:
     counts = {
         "transitions": len(own.rows.action),
         "successes": int(own.rows.terminated.sum()),
+        "at_start": int(config.task.in_start_region(own.rows.poses).sum()),
     }
     report = {
         "data": {**own.origin, **counts},
         **figures(config.task, own.rows),
         row_digest.KEY: recorder.digest(),
         "replay_gaps": [],
+        "starts": [],
         "nodes": [],
     }
     run_folder.write_json(run / "generation.json", report)

@@ -29,9 +29,9 @@ SUMMARY_KEYS = (
     "contact_share",
     "multi_body_share",
     "headings_per_state",
-    "start_region_transitions",
-    "start_region_depth",
     "trees",
+    "starts_reached",
+    "start_depth",
     "replays",
     "candidates",
     "pruned",
@@ -58,7 +58,7 @@ SUMMARY_KEYS = (
 )
 # Keys of generation.json that summary.json leaves out: the data of pictures, which are too long,
 # and what it has among "defects".
-_LEFT_OUT = ("iterations", "pushing_iterations", "replay_gaps", "nodes", "shortfalls")
+_LEFT_OUT = ("iterations", "pushing_iterations", "replay_gaps", "starts", "nodes", "shortfalls")
 
 _SEAL = "sha256"  # the last member of a JSON object: see write_json()
 _DIGITS = 64

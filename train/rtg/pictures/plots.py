@@ -265,13 +265,14 @@ def coverage(
     task: TaskLike,
     poses: Floats,
     depth: Floats,
+    starts: Floats,
     start_regions: Mapping[int, Floats],
 ) -> None:
     """Plots, for each object, its positions in all states that the tree search reached.
 
     poses [N, bodies, 3]: the states. depth [N]: number of actions from each to success, shown as
-    colour. `start_regions`: by body, the outline of the region that its centre starts in, [V, 2];
-    of those alone whose start is drawn.
+    colour. starts [T, bodies, 3]: those that the trees grew towards. `start_regions`: by body, the
+    outline of the region that its centre starts in, [V, 2]; of those alone whose start is drawn.
     """
     bodies = objects(task)
     columns = min(4, len(bodies))
@@ -296,6 +297,9 @@ def coverage(
                 lw=0,
                 rasterized=True,
             )
+            axis.scatter(
+                *starts[:, body, :2].T, color=_rgb(INK), marker="+", s=60, lw=1.4, zorder=4
+            )
             if body in start_regions:
                 _draw_start_region(axis, start_regions[body])
             axis.set_title(task.names[body])
@@ -304,7 +308,8 @@ def coverage(
         bar.locator = MaxNLocator(integer=True)
         in_ranges = ", in the middle of ranges\ndashed: where the centre of the object starts"
         figure.supxlabel(
-            "dots: centres of the object in the search's nodes\noutlines: start layout"
+            "dots: centres of the object in the search's nodes\n"
+            "crosses: in the starts that the trees grew towards\noutlines: start layout"
             f"{in_ranges if start_regions.keys() & set(bodies) else ''}\n"
             "shaded: goal of the centre, or of a mean that includes it\n"
             f"frame: arena, {2 * task.arena / task.metre:g} m wide",

@@ -31,7 +31,8 @@ def generation_text(state: RunState) -> str:
     if state.depth:
         parts.append(f"layer {state.layer}/{state.depth}")
     parts.append(f"contact share {state.contact_share:.2f}")
-    parts.append(f"{state.start_region:,} in the start region")
+    if state.starts_reached:
+        parts.append(f"starts reached: {state.starts_reached:,}")
     if state.workers:
         parts.append(f"{state.workers} worker{'s' if state.workers != 1 else ''}")
     return ", ".join(parts)

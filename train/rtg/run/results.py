@@ -42,14 +42,15 @@ def draw_generation(plan: RunPlan) -> None:
         if report["replay_gaps"]:
             plots.replay_gap(plan.folder / "replay_gap.png", plan.title, report)
         nodes = report["nodes"]
-        poses = np.array([node["poses"] for node in nodes], float)
-        poses = poses.reshape(len(nodes), plan.config.task.bodies, 3)
+        shape = (-1, plan.config.task.bodies, 3)
+        poses = np.array([node["poses"] for node in nodes], float).reshape(shape)
+        starts = np.array([start["poses"] for start in report["starts"]], float).reshape(shape)
         depth = np.array([node["depth"] for node in nodes], float)
     if not nodes:  # only a tree search has nodes
         return
     picture = plan.folder / "coverage.png"
-    starts = start_regions.rings(plan.config)
-    plots.coverage(picture, plan.title, plan.config.task, poses, depth, starts)
+    regions = start_regions.rings(plan.config)
+    plots.coverage(picture, plan.title, plan.config.task, poses, depth, starts, regions)
 
 
 def generation_warning(plan: RunPlan) -> str | None:
@@ -59,7 +60,7 @@ def generation_warning(plan: RunPlan) -> str | None:
         found = (
             diagnosis.of_own_data(report["data"])
             if plan.own_data
-            else diagnosis.of_generation(plan.config, report, report["nodes"])
+            else diagnosis.of_generation(plan.config, report)
         )
         found = found or diagnosis.undrawn_goals(report)
     return found and f"these data may not suffice: {found}"
@@ -211,8 +212,9 @@ def summary_text(plan: RunPlan, summary: dict[str, Any]) -> str:
     generated = summary["transitions"] is not None
     lines = [_generation_text(summary)] if generated else []
     lines += _learning_text(plan, summary) if plan.train else []
-    nodes = run_folder.read_json(plan.report_file).get("nodes", []) if generated else []
-    found = diagnosis.bottleneck(plan.config, summary, nodes)
+    report = run_folder.read_json(plan.report_file) if generated else {}
+    with errors.fields_of(plan.report_file):
+        found = diagnosis.bottleneck(plan.config, summary, report)
     if (words := diagnosis.undrawn_goals(summary)) and "bottleneck: goal" not in (found or ""):
         lines.append(words)
     if found:

@@ -18,7 +18,7 @@ class RunState:
     transitions: int = 0
     target: int = 0
     contact_share: float = 0.0
-    start_region: int = 0
+    starts_reached: int = 0
     workers: int = 0
     interactions: int = 0
     budget: int = 0  # total number of interactions; 0: no training

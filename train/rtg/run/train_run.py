@@ -28,7 +28,7 @@ def _initial_state(plan: RunPlan) -> RunState:
             transitions=report["transitions"],
             target=report["transitions"],
             contact_share=report["contact_share"],
-            start_region=report["start_region_transitions"],
+            starts_reached=report.get("starts_reached", 0),  # no trees made own data
             budget=plan.interactions,
         )
 
