@@ -64,7 +64,7 @@ struct ReverseSolution {
 /// first.
 struct ReverseResult {
   SolveStatus status = SolveStatus::kNonFinite;
-  int iterations = 0;
+  int iterations = 0;  // of the SQP, at all paces (pace.hpp)
   std::vector<Poses> predecessors = {};
   double cpu_s = 0.0;  // thread CPU time; the one field that is not a function of the job
   // If it was asked for, a problem was solved and it is finite.
