@@ -63,7 +63,7 @@ std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int late_contact
 /// sustained_pace() in which this is larger, or that have no predecessors.
 ///
 /// At full pace alone, a body too heavy for it is dragged only as far as the robot gets ahead of
-/// its path: the T of Push-T by 0.18 of the way of true pushes, with this by 0.98.
+/// its path: the T of Push-T by 0.24 of the way of true pushes, with this by 0.99.
 std::vector<SqpResult> solve_at_pace(std::span<Candidate* const> candidates) {
   std::vector<SqpResult> results =
       solve_together(std::vector<const Candidate*>(candidates.begin(), candidates.end()));
