@@ -60,8 +60,8 @@ def undrawn_goals(summary: dict[str, Any]) -> str | None:
     )
 
 
-def of_generation(config: _core.Config, report: dict[str, Any]) -> str | None:
-    """Returns a sentence about what limits the search; None if nothing does.
+def of_search(config: _core.Config, report: dict[str, Any]) -> str | None:
+    """Returns a sentence about goal states or reverse solves that fall short; None if none do.
 
     `report`: generation.json.
     """
@@ -80,17 +80,25 @@ def of_generation(config: _core.Config, report: dict[str, Any]) -> str | None:
             f"reverse solves: {report['converged']:,} of {asked:,} found a push; try more "
             "sub-steps of a push (physics.sub_steps) or shorter ones (task.push.strides)"
         )
-    if not report["starts_reached"]:
-        trees = report["trees"]
-        deepest = max(node["depth"] for node in report["nodes"])
-        room = ", or wider ways between the fixed bodies" if any(config.task.fixed) else ""
-        return (
-            f"reaching the start: no tree does ({trees} grew, starts_reached is 0), the "
-            f"deepest has {deepest} actions; nearest to their starts came "
-            f"{_distances(config.task, report)}; try "
-            f"{_search_advice(config, trees, deepest)}, or an easier start{room}"
-        )
     return None
+
+
+def _of_starts(config: _core.Config, report: dict[str, Any]) -> str | None:
+    """Returns a sentence about trees none of which comes to its start; None if one does.
+
+    Runs with such trees often learn all the same: it explains a failure, and foretells none.
+    """
+    if report["starts_reached"]:
+        return None
+    trees = report["trees"]
+    deepest = max(node["depth"] for node in report["nodes"])
+    room = ", or wider ways between the fixed bodies" if any(config.task.fixed) else ""
+    return (
+        f"reaching the start: no tree does ({trees} grew, starts_reached is 0), the "
+        f"deepest has {deepest} actions; nearest to their starts came "
+        f"{_distances(config.task, report)}; try "
+        f"{_search_advice(config, trees, deepest)}, or an easier start{room}"
+    )
 
 
 def of_own_data(data: dict[str, Any]) -> str | None:
@@ -146,6 +154,6 @@ def bottleneck(config: _core.Config, summary: dict[str, Any], report: dict[str, 
         return None
     if (summary.get("success_rate") or 0.0) >= _WELL:
         return None
-    lacks = of_own_data(own) if own else of_generation(config, report)
+    lacks = of_own_data(own) if own else of_search(config, report) or _of_starts(config, report)
     found = lacks or _learning(config, summary)
     return found and f"bottleneck: {found}"

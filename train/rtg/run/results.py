@@ -60,7 +60,7 @@ def generation_warning(plan: RunPlan) -> str | None:
         found = (
             diagnosis.of_own_data(report["data"])
             if plan.own_data
-            else diagnosis.of_generation(plan.config, report)
+            else diagnosis.of_search(plan.config, report)
         )
         found = found or diagnosis.undrawn_goals(report)
     return found and f"these data may not suffice: {found}"
