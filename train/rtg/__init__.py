@@ -52,6 +52,7 @@ ENVIRONMENTS = {
     "RTG/Gate-v0": ("gate", 80),
     "RTG/Maze-v0": ("maze", 80),
     "RTG/Drawer-v0": ("drawer", 80),
+    "RTG/Cable-v0": ("cable", 80),
 }
 
 
