@@ -24,7 +24,7 @@ MISTAKES = {
     ),
     "missing file": (
         ["mine.yaml"],
-        "mine.yaml: no such task file; legal: art_manip, art_manip_hard, drawer, ",
+        "mine.yaml: no such task file; legal: art_manip, art_manip_hard, cable, ",
     ),
     "workers no number": (["--workers", "two"], "--workers two: "),
     "workers negative": (["--workers", "-1"], "--workers"),
