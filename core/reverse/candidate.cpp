@@ -1,5 +1,6 @@
 #include "core/reverse/candidate.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <memory>
@@ -9,10 +10,10 @@
 #include "core/energy/open_gaps.hpp"
 #include "core/math/assembled_solver.hpp"
 #include "core/math/riccati.hpp"
-#include "core/reverse/pace.hpp"
 #include "core/reverse/pruning.hpp"
 #include "core/reverse/sqp/filter_sqp.hpp"
 #include "core/reverse/sqp/merit_sqp.hpp"
+#include "core/world/pace.hpp"
 
 namespace rtg::reverse {
 namespace {
@@ -82,7 +83,8 @@ Candidate::Candidate(const Scene& scene, const PhysicsConfig& physics, const Pus
                direction(job.action, push),
                physics.sub_steps + physics.settling_steps(),
                physics.settling_steps()} {
-  problem_.pace = least_pace(problem_, subscene_.scene);
+  // Without its penalty the path does not hold the robot.
+  if (config.path_weight > 0.0) problem_.pace = std::ranges::min(paces(subscene_.scene, physics));
 }
 
 std::vector<SqpResult> solve_together(std::span<const Candidate* const> candidates) {

@@ -20,7 +20,7 @@ class Candidate {
   Candidate& operator=(const Candidate&) = delete;
 
   const ReverseProblem& problem() const { return problem_; }
-  void set_pace(double pace) { problem_.pace = pace; }        // at first least_pace()
+  void set_pace(double pace) { problem_.pace = pace; }        // at first the least of paces()
   int stride() const { return stride_; }                      // its stride_index()
   const std::vector<int>& bodies() const { return bodies_; }  // scene indices, in problem order
   const Scene& scene() const { return subscene_.scene; }      // of these bodies alone

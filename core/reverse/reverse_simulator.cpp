@@ -59,7 +59,8 @@ std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int late_contact
   return out;
 }
 
-/// Solves the candidates together, first at their least_pace(). Then solves those again at their
+/// Solves the candidates together, first at the least pace of their bodies
+/// (paces()). Then solves those again at their
 /// sustained_pace() in which this is larger, or that have no predecessors.
 ///
 /// At full pace alone, a body too heavy for it is dragged only as far as the robot gets ahead of

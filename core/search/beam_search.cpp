@@ -13,8 +13,8 @@
 namespace rtg::search {
 
 BeamSearch::BeamSearch(const tasks::Task& task, const SearchConfig& config, Poses target,
-                       std::uint64_t seed)
-    : task_(task), config_(config), metric_(task), target_(std::move(target)), rng_(seed) {}
+                       std::uint64_t seed, std::span<const double> paces)
+    : task_(task), config_(config), metric_(task, paces), target_(std::move(target)), rng_(seed) {}
 
 void BeamSearch::make_roots(const ReplayBatch& replay, SearchStats& stats) {
   std::vector<ReplayJob> goals;

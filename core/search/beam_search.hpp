@@ -26,8 +26,10 @@ struct Node {
 /// form a tree. A node's parent is one push nearer to the goal.
 class BeamSearch {
  public:
-  /// `target`: the start state to reach. `task` and `config` must outlive the search.
-  BeamSearch(const tasks::Task& task, const SearchConfig& config, Poses target, std::uint64_t seed);
+  /// `target`: the start state to reach. `paces`: see GenerationSeams. `task` and `config` must
+  /// outlive the search.
+  BeamSearch(const tasks::Task& task, const SearchConfig& config, Poses target, std::uint64_t seed,
+             std::span<const double> paces = {});
 
   /// Makes the first beam of goal states near the target (goal_roots()). Lets each state come to
   /// rest by `replay`. Drops states that then are not legal, or no goal states, or in the

@@ -33,7 +33,7 @@ void grow_tree(Generation& run, int number) {
   Rng rng = run.attempt_rng(number);
   const std::string phase = "tree " + std::to_string(run.attempts + number + 1);
   const Poses target = run.draw_start(rng);
-  BeamSearch search(run.task, run.config, target, rng.word());
+  BeamSearch search(run.task, run.config, target, rng.word(), run.seams.paces);
   search.make_roots(run.replay(Stage::kGoals), run.stats);
   if (search.nodes().empty()) return;
   run.starts.push_back({target});

@@ -62,7 +62,8 @@ struct Progress {
 struct GenerationSeams {
   SolveBatch solve;
   ReplayBatch replay;
-  TransitionSink store;  // receives every transition, in order
+  TransitionSink store;            // receives every transition, in order
+  std::vector<double> paces = {};  // of pushes of each body (rtg::paces()); empty: all 1
   // Both may be empty. They are called for each layer of a search or wave of walks.
   std::function<void(const Progress&)> progress = {};
   std::function<bool()> cancelled = {};

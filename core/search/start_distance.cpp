@@ -102,7 +102,7 @@ double start_distance(const tasks::Task& task, const StateMetric& metric, const 
     const Vector2d from = poses[o.body].position(), to = target[o.body].position();
     const double there = from_home(from);
     sum += kPushesBetweenObjects + there + from_home(to) +
-           metric.distance_around(o, poses, target) / stride;
+           metric.distance_around(o, poses, target) / (stride * o.pace);
     if (placed) continue;
     const Vector2d way = metric.way(o.body, poses, from, to).next - from;
     first = std::min(first, approach_pushes(task, metric, poses, o.body, way) - there);

@@ -7,7 +7,7 @@ namespace rtg::search {
 
 /// Estimates the number of pushes between `poses` and the start state `target`:
 ///
-///   Σ_objects out of place [2 + (|h - x| + |x - x*| + r|θ - θ*| + |x* - h|) / stride]
+///   Σ_objects out of place [2 + (|h - x| + (|x - x*| + r|θ - θ*|) / σ + |x* - h|) / stride]
 ///     + min_objects out of place [approach_pushes - |h - x| / stride]
 ///
 /// h is the robot's own place. So the robot goes to an object, takes it to its place, goes home and
@@ -16,6 +16,9 @@ namespace rtg::search {
 ///
 /// Gates (StateMetric::is_gate()) that are in place, but in the way of an object that is not, count
 /// as out of place in the first sum: they have to be opened and shut again.
+///
+/// σ is the pace of a push of the object (StateMetric::Object::pace): a push moves a heavy one by
+/// less than a stride.
 ///
 /// All lengths are those of the shortest ways around fixed bodies (StateMetric::way()), |x - x*|
 /// also around gates. The way in which an object is to be pulled is the first piece of that.

@@ -30,7 +30,10 @@ StateMetric::StateMetric(const Scene& scene) {
   }
 }
 
-StateMetric::StateMetric(const tasks::Task& task) : StateMetric(task.scene) {
+StateMetric::StateMetric(const tasks::Task& task, std::span<const double> paces)
+    : StateMetric(task.scene) {
+  if (!paces.empty())
+    for (Object& o : objects_) o.pace = paces[o.body];
   const std::vector<Body>& bodies = task.scene.bodies;
   if (std::ranges::none_of(bodies, &Body::fixed)) return;
   task_ = task;

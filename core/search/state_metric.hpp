@@ -19,14 +19,16 @@ namespace rtg::search {
 class StateMetric {
  public:
   explicit StateMetric(const Scene& scene);
-  /// Knows the ways around the fixed bodies of the task, too.
-  explicit StateMetric(const tasks::Task& task);
+  /// Knows the ways around the fixed bodies of the task, too, and the paces() of the bodies, all 1
+  /// if there are none.
+  explicit StateMetric(const tasks::Task& task, std::span<const double> paces = {});
 
   /// A body other than the robot that can move.
   struct Object {
     std::size_t body;
     bool jointed;
-    double turn;  // Shape::symmetry(); 2π with a joint
+    double turn;        // Shape::symmetry(); 2π with a joint
+    double pace = 1.0;  // of a push of it, rtg::paces()
   };
   std::span<const Object> objects() const { return objects_; }
 

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/world/pace.hpp"
 #include "nodes/beam_coordinator/coordinator_node.hpp"
 #include "nodes/config/config.hpp"
 #include "nodes/files/atomic_file.hpp"
@@ -36,7 +37,8 @@ int run(const program::Words& words) {
   if (journal.size() > 0)
     program::say("has the answers to " + std::to_string(journal.size()) + " units of work");
   program::say_waiting(bus, "the workers and the server");
-  auto report = node.run([&](const search::GenerationSeams& seams) {
+  auto report = node.run([&](search::GenerationSeams seams) {
+    seams.paces = paces(config.task.scene, config.physics);
     const auto seed = static_cast<std::uint64_t>(config.run.seed);
     return generate(config.task, config.search, seed, seams);
   });

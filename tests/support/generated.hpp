@@ -5,6 +5,7 @@
 
 #include "core/search/generate.hpp"
 #include "core/search/simulators.hpp"
+#include "core/world/pace.hpp"
 #include "nodes/beam_coordinator/row_digest.hpp"
 #include "nodes/config/config.hpp"
 
@@ -18,6 +19,7 @@ inline search::GenerationReport generated(
       reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
       search::forward_replay(config.task, config.physics, config.forward), threads);
   beam_coordinator::RowDigest digest;
+  seams.paces = paces(config.task.scene, config.physics);
   seams.store = [&digest](std::span<const search::Transition> rows) { digest.add(rows); };
   seams.progress = std::move(progress);
   search::GenerationReport report = generate(config.task, config.search, seed, seams);

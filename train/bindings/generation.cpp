@@ -12,6 +12,7 @@
 #include "core/search/generate.hpp"
 #include "core/search/search_config.hpp"
 #include "core/search/simulators.hpp"
+#include "core/world/pace.hpp"
 #include "nodes/config/config.hpp"
 #include "nodes/jobs/journaled.hpp"
 #include "train/bindings/arrays.hpp"
@@ -56,6 +57,7 @@ std::string generate_in_process(const config::Config& config, const nb::object& 
   if (journal)
     keep_in(known.emplace(*journal, generation_hash(config)),
             {static_cast<int>(config.task.scene.size()), action_count(config.task.push)}, seams);
+  seams.paces = paces(config.task.scene, config.physics);
   seams.store = [&](std::span<const search::Transition> rows) { hand_over(store, rows); };
   seams.progress = [&](const search::Progress& p) { report_progress(progress, p); };
   const auto seed = static_cast<std::uint64_t>(config.run.seed);

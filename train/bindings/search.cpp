@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/search/simulators.hpp"
+#include "core/world/pace.hpp"
 #include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
@@ -22,8 +23,8 @@ class TaskSearch {
                            config_.search.generator),
             search::forward_replay(config_.task, config_.physics, config_.forward),
             config_.run.workers)),
-        search_(config_.task, config_.search, only_state(target, config_.task.scene.size()), seed) {
-  }
+        search_(config_.task, config_.search, only_state(target, config_.task.scene.size()), seed,
+                paces(config_.task.scene, config_.physics)) {}
   TaskSearch(const TaskSearch&) = delete;  // the search refers to the task of this object
   TaskSearch& operator=(const TaskSearch&) = delete;
 

@@ -9,36 +9,6 @@
 namespace rtg::reverse {
 namespace {
 
-/// The touching scene with a second box of which the robot has too little force.
-struct HeavyScene : testing::TouchingScene {
-  HeavyScene() {
-    scene.bodies[2].density = 8.0;
-    update();
-  }
-};
-
-TEST(Pace, TheRobotsForceIsEnoughForTheHeaviestBody) {
-  const HeavyScene heavy;
-  const ReverseConfig config;
-  const double robot = mass_of(heavy.scene.bodies[0]).mass,
-               box = mass_of(heavy.scene.bodies[2]).mass;
-  const double pace = least_pace(heavy.problem(config), heavy.scene);
-  EXPECT_NEAR(pace * (robot + box), 0.99 * heavy.physics.force_factor * robot, 1e-9);
-  const testing::TouchingScene light;
-  EXPECT_EQ(least_pace(light.problem(config), light.scene), 1.0);
-}
-
-TEST(Pace, BodiesWithJointsAndRobotsWithoutAPathHaveThatOfTheAction) {
-  HeavyScene heavy;
-  ReverseConfig config;
-  config.path_weight = 0.0;
-  EXPECT_EQ(least_pace(heavy.problem(config), heavy.scene), 1.0);
-  config = {};
-  heavy.scene.joints.push_back({1, 2, {1.0, 0.0}, {-1.0, 0.0}});
-  heavy.update();
-  EXPECT_EQ(least_pace(heavy.problem(config), heavy.scene), 1.0);
-}
-
 /// The pace of a push to the right with these shares of the largest force, found at `pace`.
 double sustained(double pace, const std::vector<double>& shares) {
   const testing::TouchingScene scene;

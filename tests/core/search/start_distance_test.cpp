@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "tests/support/art_manip.hpp"
 #include "tests/support/gathering.hpp"
@@ -35,6 +36,11 @@ TEST_F(StartDistanceTest, ARobotReadyToPullHasNoWayToGo) {
   const Pose box = poses[1];
   EXPECT_NEAR(with_robot_at(box.x - 1.55, box.y), pulled + home, 1e-12);
   EXPECT_NEAR(with_robot_at(box.x + 1.55, box.y), pulled + home + 2.0, 1e-12);  // the wrong side
+}
+
+TEST_F(StartDistanceTest, AHeavyObjectTakesMorePushes) {
+  metric = StateMetric(task, std::vector{1.0, 0.25, 1.0, 1.0});
+  EXPECT_NEAR(with_robot_at(poses[1].x - 1.55, poses[1].y), 2.0 + 1.5 / 0.25 + home, 1e-12);
 }
 
 TEST_F(StartDistanceTest, OneStrideFromThereIsOnePushAndLessThanThatIsTwo) {
