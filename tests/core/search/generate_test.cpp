@@ -281,6 +281,16 @@ TEST(Generate, EndsEvenIfNoReverseSolveConverges) {
   EXPECT_TRUE(report.stats.gaps.empty());
 }
 
+TEST(Generate, TellsWhyGoalStatesWereDrawnInVain) {
+  tasks::Task task = gathering();
+  task.goal = testing::near_origin(0.04);  // no room for three
+  GenerationSeams seams = testing::naive_seams(task, 1);
+  seams.store = [](std::span<const Transition>) {};
+  const GenerationReport report = generate(task, small(), 7, seams);
+  EXPECT_TRUE(report.starts.empty());
+  EXPECT_EQ(report.undrawn_reason, main_reason(report.stats.goal_refusals, task.scene));
+}
+
 TEST(Generate, WithRandomiseTreesAndWalksHaveStartsAllOverTheTasksRandomisation) {
   tasks::Task task = gathering();
   task.start_jitter = 0.25;  // what is in place in a tree is moved no farther
