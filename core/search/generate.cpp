@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,12 +18,20 @@
 namespace rtg::search {
 namespace {
 
-/// Returns by body how near its centre comes to its place in `start` in any of the nodes [m].
+/// Returns by body how far its centre is from its place in `start` [m], in the node in which the
+/// sum of these over all bodies but the robot is least.
 std::vector<double> least_distances(std::span<const Node> nodes, const Poses& start) {
-  std::vector<double> least(start.size(), std::numeric_limits<double>::infinity());
-  for (const Node& n : nodes)
+  std::vector<double> least;
+  double least_sum = std::numeric_limits<double>::infinity();
+  for (const Node& n : nodes) {
+    std::vector<double> away;
     for (std::size_t b = 0; b < start.size(); ++b)
-      least[b] = std::min(least[b], (n.poses[b].position() - start[b].position()).norm());
+      away.push_back((n.poses[b].position() - start[b].position()).norm());
+    const double sum = std::accumulate(away.begin() + 1, away.end(), 0.0);
+    if (sum >= least_sum) continue;
+    least_sum = sum;
+    least = std::move(away);
+  }
   return least;
 }
 

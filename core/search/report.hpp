@@ -21,7 +21,7 @@ struct ReportNode {
 struct TreeStart {
   Poses poses;
   int depth = -1;                 // BeamSearch::start_depth() of the tree
-  std::vector<double> away = {};  // least distance of each body's centre from its place [m]
+  std::vector<double> away = {};  // of each body's centre from its place in the nearest node [m]
 
   bool reached() const { return depth >= 0; }
 };

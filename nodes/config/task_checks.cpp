@@ -13,6 +13,8 @@
 namespace rtg::config {
 namespace {
 
+constexpr int kDraws = 10;  // of goal states until a goal counts as one that cannot be met
+
 const std::string kRobotKind = "robot";
 
 std::string body_path(std::size_t i) { return "task.bodies." + std::to_string(i); }
@@ -242,11 +244,13 @@ void check_goal(const tasks::Task& task, const ConfigNode& section) {
                       "a goal that the start state does not meet");
   Rng rng(1);
   tasks::Refusals refusals;
-  if (sample_goal(task, rng, &refusals)) return;
+  for (int draw = 0; draw < kDraws; ++draw)
+    if (sample_goal(task, rng, &refusals)) return;
   const auto term = main_term(refusals);
   throw ConfigError(
       term ? find(section, "goal")->value.items[*term].origin : origin, "task.goal",
-      "no layout of the bodies that meets the goal was found; " + main_reason(refusals, task.scene),
+      "no layout of the bodies that meets the goal was found in " + std::to_string(kDraws) +
+          " draws; " + main_reason(refusals, task.scene),
       "terms that all objects can meet at once, with a margin of " +
           length_text(tasks::kGoalSpare, task.units) +
           " m and 0.05 rad; objects that fit only side by side need a term on their angle, too");

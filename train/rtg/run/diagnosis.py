@@ -21,11 +21,12 @@ _STILL = 0.05  # spread of places of an object that is in one place, in the unit
 
 
 def _distances(task: _core.Task, report: dict[str, Any]) -> str:
-    """Says how near each object comes to its place in the start that a tree grew towards."""
+    """Says how far each object is from its start in the state that comes nearest to one."""
     parts = []
-    nearest = np.min([start["away"] for start in report["starts"]], axis=0)  # [bodies]
+    bodies = objects(task)
+    nearest = min((np.array(s["away"]) for s in report["starts"]), key=lambda a: a[bodies].sum())
     poses = np.array([node["poses"] for node in report["nodes"]])
-    for body in objects(task):
+    for body in bodies:
         words = f"'{task.names[body]}' {nearest[body] / task.metre:.2g} m"
         if np.ptp(poses[:, body, :2], axis=0).max() < _STILL and nearest[body] > _THERE:
             words += " (in one place in all states)"
@@ -33,17 +34,12 @@ def _distances(task: _core.Task, report: dict[str, Any]) -> str:
     return ", ".join(parts)
 
 
-def _search_advice(config: _core.Config, trees: int, deepest: int) -> str:
+def _search_advice(config: _core.Config, deepest: int) -> str:
     search = config.search
     if deepest >= min(search.depth, config.task.horizon) - 1:
         horizon = config.task.horizon
         return f"deeper trees (search.depth, {search.depth} now, and task.horizon, {horizon} now)"
-    if trees <= 1:
-        return f"more transitions (search.transitions, {search.transitions:,} now)"
-    return (
-        f"trees that go on without coming nearer (search.patience, {search.patience} now), wider "
-        f"ones (search.breadth, {search.breadth} now)"
-    )
+    return f"more transitions (search.transitions, {search.transitions:,} now)"
 
 
 def undrawn_goals(summary: dict[str, Any]) -> str | None:
@@ -95,9 +91,9 @@ def _of_starts(config: _core.Config, report: dict[str, Any]) -> str | None:
     room = ", or wider ways between the fixed bodies" if any(config.task.fixed) else ""
     return (
         f"reaching the start: no tree does ({trees} grew, starts_reached is 0), the "
-        f"deepest has {deepest} actions; nearest to their starts came "
+        f"deepest has {deepest} actions; the state nearest to a start has "
         f"{_distances(config.task, report)}; try "
-        f"{_search_advice(config, trees, deepest)}, or an easier start{room}"
+        f"{_search_advice(config, deepest)}, or an easier start{room}"
     )
 
 
