@@ -29,7 +29,7 @@ def node(depth: int, **moved: tuple[float, float]) -> dict[str, Any]:
 
 
 def towards(*away: float) -> dict[str, Any]:
-    """A start that no tree reached, with the distances of robot and boxes from it in the nearest state."""
+    """A start that no tree reached, with distances of robot and boxes in the nearest state."""
     return {"poses": CONFIG.task.start.tolist(), "depth": None, "away": list(away)}
 
 
