@@ -59,9 +59,9 @@ std::vector<VectorXd> predecessors(std::span<const VectorXd> p, int late_contact
   return out;
 }
 
-/// Solves the candidates together, first at the least pace of their bodies
-/// (paces()). Then solves those again at their
-/// sustained_pace() in which this is larger, or that have no predecessors.
+/// Solves the candidates together, first at the least pace of their bodies (paces()). Where that is
+/// below 1, solves those again whose sustained_pace() is larger, and at pace 1 those that have no
+/// predecessors.
 ///
 /// At full pace alone, a body too heavy for it is dragged only as far as the robot gets ahead of
 /// its path: the T of Push-T by 0.24 of the way of true pushes, with this by 0.99.
@@ -72,6 +72,7 @@ std::vector<SqpResult> solve_at_pace(std::span<Candidate* const> candidates) {
   std::vector<std::size_t> where;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const ReverseProblem& problem = candidates[k]->problem();
+    if (problem.pace + kFaster > 1.0) continue;
     const double pace =
         has_predecessors(results[k].status) ? sustained_pace(problem, results[k].x) : 1.0;
     if (pace < problem.pace + kFaster) continue;

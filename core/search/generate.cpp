@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <string>
@@ -21,18 +20,16 @@ namespace {
 /// Returns by body how far its centre is from its place in `start` [m], in the node in which the
 /// sum of these over all bodies but the robot is least.
 std::vector<double> least_distances(std::span<const Node> nodes, const Poses& start) {
-  std::vector<double> least;
-  double least_sum = std::numeric_limits<double>::infinity();
-  for (const Node& n : nodes) {
-    std::vector<double> away;
+  const auto away = [&](const Node& node) {
+    std::vector<double> out;
     for (std::size_t b = 0; b < start.size(); ++b)
-      away.push_back((n.poses[b].position() - start[b].position()).norm());
-    const double sum = std::accumulate(away.begin() + 1, away.end(), 0.0);
-    if (sum >= least_sum) continue;
-    least_sum = sum;
-    least = std::move(away);
-  }
-  return least;
+      out.push_back((node.poses[b].position() - start[b].position()).norm());
+    return out;
+  };
+  return away(*std::ranges::min_element(nodes, {}, [&](const Node& node) {
+    const std::vector<double> distances = away(node);
+    return std::accumulate(distances.begin() + 1, distances.end(), 0.0);
+  }));
 }
 
 /// Runs Algorithm 1 once: draws a start and grows a tree from goal states towards it. Ends after

@@ -10,6 +10,7 @@
 #include "core/reverse/reverse_simulator.hpp"
 #include "core/threads/cpu_clock.hpp"
 #include "core/threads/parallel_for.hpp"
+#include "core/world/pace.hpp"
 
 namespace rtg::search {
 namespace {
@@ -91,10 +92,14 @@ ReplayBatch replay_on_threads(ReplayOne replay, int threads) {
   };
 }
 
-GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads) {
+GenerationSeams in_process_seams(const tasks::Task& task, const PhysicsConfig& physics,
+                                 const reverse::ReverseConfig& reverse,
+                                 const forward::ForwardConfig& forward, Generator generator,
+                                 int threads) {
   GenerationSeams seams;
-  seams.solve = solve_on_threads(std::move(solve), threads);
-  seams.replay = replay_on_threads(std::move(replay), threads);
+  seams.solve = solve_on_threads(reverse_solver(task, physics, reverse, generator), threads);
+  seams.replay = replay_on_threads(forward_replay(task, physics, forward), threads);
+  seams.paces = paces(task.scene, physics);
   return seams;
 }
 

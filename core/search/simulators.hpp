@@ -25,8 +25,12 @@ ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics,
 SolveBatch solve_on_threads(SolveBatch solve, int threads);
 ReplayBatch replay_on_threads(ReplayOne replay, int threads);
 
-/// Returns seams whose `solve` and `replay` use `threads` threads of this process. The caller sets
-/// `store`, and may set `progress` and `cancelled`.
-GenerationSeams in_process_seams(SolveBatch solve, ReplayOne replay, int threads);
+/// Returns seams with the paces of the task, whose `solve` and `replay` are reverse_solver() and
+/// forward_replay() on `threads` threads of this process. The caller sets `store`, and may set
+/// `progress` and `cancelled`.
+GenerationSeams in_process_seams(const tasks::Task& task, const PhysicsConfig& physics,
+                                 const reverse::ReverseConfig& reverse,
+                                 const forward::ForwardConfig& forward, Generator generator,
+                                 int threads);
 
 }  // namespace rtg::search

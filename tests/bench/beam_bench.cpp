@@ -42,8 +42,7 @@ void beam(benchmark::State& state, const Size& size) {
   search::SearchConfig config;
   config.breadth = size.breadth;
   search::GenerationSeams seams =
-      search::in_process_seams(reverse_solver(task, {}, {}, search::Generator::kRrbs),
-                               search::forward_replay(task, {}), size.threads);
+      search::in_process_seams(task, {}, {}, {}, search::Generator::kRrbs, size.threads);
   double simulating = 0.0;
   seams.solve = [&simulating, solve = seams.solve](std::span<const reverse::ReverseJob> jobs) {
     const Clock clock(simulating);

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <exception>
 #include <map>
-#include <mutex>
 
 #include "core/reverse/pruning.hpp"
 #include "core/search/generate.hpp"
@@ -32,7 +31,6 @@ class Sample {
     if (!task_.scene.joints.empty() && part_of(task_, {}, job).scene.joints.empty()) return;
     const Difficulty difficulty = difficulty_of(task_, {}, job);
     const auto kind = static_cast<std::size_t>(difficulty);
-    const std::scoped_lock lock(mutex_);
     ++seen_[kind];
     auto& kept = kept_[kind];
     kept.emplace(key_of(job), Problem{task_.name, difficulty, job});
@@ -49,7 +47,6 @@ class Sample {
 
  private:
   const tasks::Task& task_;
-  std::mutex mutex_;
   std::array<std::map<std::uint64_t, Problem>, kQuota.size()> kept_;
   std::array<long, kQuota.size()> seen_{};
 };
@@ -60,13 +57,11 @@ void dump(const std::filesystem::path& folder, int transitions) {
     search::SearchConfig search;
     search.transitions = transitions;
     Sample sample(task);
-    const search::SolveBatch solve = reverse_solver(task, {}, {}, search.generator);
-    const auto sampled = [&](std::span<const reverse::ReverseJob> jobs) {
+    search::GenerationSeams seams = search::in_process_seams(task, {}, {}, {}, search.generator, 2);
+    seams.solve = [&sample, solve = seams.solve](std::span<const reverse::ReverseJob> jobs) {
       for (const reverse::ReverseJob& job : jobs) sample.add(job);
       return solve(jobs);
     };
-    search::GenerationSeams seams =
-        search::in_process_seams(sampled, search::forward_replay(task, {}), 2);
     seams.store = [](std::span<const search::Transition>) {};
     generate(task, search, 1, seams);
     sample.move_to(problems);

@@ -5,7 +5,6 @@
 
 #include "core/search/generate.hpp"
 #include "core/search/simulators.hpp"
-#include "core/world/pace.hpp"
 #include "nodes/beam_coordinator/row_digest.hpp"
 #include "nodes/config/config.hpp"
 
@@ -15,11 +14,10 @@ namespace rtg::testing {
 inline search::GenerationReport generated(
     const config::Config& config, std::uint64_t seed, int threads,
     std::function<void(const search::Progress&)> progress = [](const search::Progress&) {}) {
-  search::GenerationSeams seams = search::in_process_seams(
-      reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
-      search::forward_replay(config.task, config.physics, config.forward), threads);
+  search::GenerationSeams seams =
+      search::in_process_seams(config.task, config.physics, config.reverse, config.forward,
+                               config.search.generator, threads);
   beam_coordinator::RowDigest digest;
-  seams.paces = paces(config.task.scene, config.physics);
   seams.store = [&digest](std::span<const search::Transition> rows) { digest.add(rows); };
   seams.progress = std::move(progress);
   search::GenerationReport report = generate(config.task, config.search, seed, seams);

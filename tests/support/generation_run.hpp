@@ -17,8 +17,7 @@ struct GenerationRun {
 /// The in-process seams over the reverse steps of a generator.
 inline search::GenerationSeams seams_of(const tasks::Task& task, search::Generator generator,
                                         int threads) {
-  return search::in_process_seams(reverse_solver(task, {}, {}, generator),
-                                  search::forward_replay(task, {}), threads);
+  return search::in_process_seams(task, {}, {}, {}, generator, threads);
 }
 
 inline search::GenerationSeams naive_seams(const tasks::Task& task, int threads) {

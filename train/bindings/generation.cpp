@@ -12,7 +12,6 @@
 #include "core/search/generate.hpp"
 #include "core/search/search_config.hpp"
 #include "core/search/simulators.hpp"
-#include "core/world/pace.hpp"
 #include "nodes/config/config.hpp"
 #include "nodes/jobs/journaled.hpp"
 #include "train/bindings/arrays.hpp"
@@ -50,14 +49,13 @@ std::string generate_in_process(const config::Config& config, const nb::object& 
                                 const nb::object& progress,
                                 const std::optional<std::filesystem::path>& journal) {
   const nb::gil_scoped_release release;
-  search::GenerationSeams seams = search::in_process_seams(
-      reverse_solver(config.task, config.physics, config.reverse, config.search.generator),
-      search::forward_replay(config.task, config.physics, config.forward), config.run.workers);
+  search::GenerationSeams seams =
+      search::in_process_seams(config.task, config.physics, config.reverse, config.forward,
+                               config.search.generator, config.run.workers);
   std::optional<jobs::UnitJournal> known;
   if (journal)
     keep_in(known.emplace(*journal, generation_hash(config)),
             {static_cast<int>(config.task.scene.size()), action_count(config.task.push)}, seams);
-  seams.paces = paces(config.task.scene, config.physics);
   seams.store = [&](std::span<const search::Transition> rows) { hand_over(store, rows); };
   seams.progress = [&](const search::Progress& p) { report_progress(progress, p); };
   const auto seed = static_cast<std::uint64_t>(config.run.seed);

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/search/simulators.hpp"
-#include "core/world/pace.hpp"
 #include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
@@ -18,13 +17,11 @@ class TaskSearch {
  public:
   TaskSearch(const config::Config& config, const StateArray& target, std::uint64_t seed)
       : config_(config),
-        seams_(search::in_process_seams(
-            reverse_solver(config_.task, config_.physics, config_.reverse,
-                           config_.search.generator),
-            search::forward_replay(config_.task, config_.physics, config_.forward),
-            config_.run.workers)),
+        seams_(search::in_process_seams(config_.task, config_.physics, config_.reverse,
+                                        config_.forward, config_.search.generator,
+                                        config_.run.workers)),
         search_(config_.task, config_.search, only_state(target, config_.task.scene.size()), seed,
-                paces(config_.task.scene, config_.physics)) {}
+                seams_.paces) {}
   TaskSearch(const TaskSearch&) = delete;  // the search refers to the task of this object
   TaskSearch& operator=(const TaskSearch&) = delete;
 

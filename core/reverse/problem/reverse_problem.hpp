@@ -31,7 +31,7 @@ struct ReverseProblem {
   Vector2d direction;  // d(a)
   int sub_steps = 1;   // h
   int settling = 0;    // sub-steps at the end in which the robot is held
-  double pace = 1.0;   // speed of the robot on its path / its speed without a load (pace.hpp)
+  double pace = 1.0;   // speed of the robot on its path / its speed without a load
 };
 
 /// An iterate of the SQP: a trajectory with its forces and multipliers. Entry k belongs to the end
