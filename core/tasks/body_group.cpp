@@ -39,7 +39,7 @@ std::optional<Values> values_in_goal(GoalDraw& draw, const Joint& joint) {
                  ? outside(values, range, draw.rng)
                  : Values{std::max(values.least, range.least), std::min(values.most, range.most)};
     if (values.least > values.most) {
-      ++draw.refusals.by_term[k];
+      draw.refusals.count({Refusal::Kind::kTerm, k});
       return std::nullopt;
     }
   }
@@ -129,7 +129,7 @@ bool try_add(GoalDraw& draw, const BodyGroup& group) {
       const bool within = in_arena(pose, draw.task.push);
       if (const auto other = within ? blocker(draw.task, trial, i, pose) : std::nullopt;
           other || !within) {
-        ++draw.refusals.no_room[{i, other.value_or(i)}];
+        draw.refusals.count({Refusal::Kind::kNoRoom, i, other.value_or(i)});
         return false;
       }
     }

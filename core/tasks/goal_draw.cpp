@@ -48,23 +48,26 @@ int rank(const Condition& condition) {
 }  // namespace
 
 bool meets_terms_of(GoalDraw& draw, std::size_t body, const Poses& poses) {
+  bool met = true;
   for (std::size_t k = 0; k < draw.goal.size(); ++k) {
     const GoalTerm& term = draw.goal[k];
     if (!is_of_one_body(term) || !concerns(term, draw.task.scene, body)) continue;
     if (excess(term, draw.task, poses, body) <= 0.0) continue;
-    ++draw.refusals.by_term[k];
-    return false;
+    draw.refusals.count({Refusal::Kind::kTerm, k});
+    met = false;
   }
-  return true;
+  return met;
 }
 
 bool meets_goal(GoalDraw& draw) {
+  draw.refusals = {};
+  bool met = true;
   for (std::size_t k = 0; k < draw.goal.size(); ++k)
     if (!is_of_one_body(draw.goal[k]) && !holds(draw.goal[k], draw.task, draw.state.poses)) {
-      ++draw.refusals.by_term[k];
-      return false;
+      draw.refusals.count({Refusal::Kind::kTerm, k});
+      met = false;
     }
-  return true;
+  return met;
 }
 
 Vector2d point_in_arena(GoalDraw& draw) {

@@ -16,14 +16,14 @@ struct GoalDraw {
   const Task& task;
   const std::vector<GoalTerm>& goal;
   Rng& rng;
-  Refusals& refusals;
   PartialState state;
+  Refusals refusals = {};  // of the proposals for what is being placed
 };
 
-/// Returns whether a body meets the terms on it alone; counts the term that fails.
+/// Returns whether a body meets the terms on it alone; counts the terms that fail.
 bool meets_terms_of(GoalDraw& draw, std::size_t body, const Poses& poses);
 
-/// Returns whether all other terms hold; counts one that does not.
+/// Returns whether all other terms hold; counts those that do not.
 bool meets_goal(GoalDraw& draw);
 
 /// Returns a uniform point of the arena.

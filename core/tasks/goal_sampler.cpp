@@ -47,6 +47,7 @@ std::optional<std::size_t> member_to_touch(GoalDraw& draw, const BodyGroup& grou
 
 bool place_object(GoalDraw& draw, std::size_t i) {
   const double share = beside_share(draw, i);
+  draw.refusals = {};
   for (int k = 0; k < kProposals; ++k) {
     BodyGroup group{i, {i}, draw.state.poses};
     if (draw.rng.uniform(0.0, 1.0) < share) {
@@ -78,6 +79,7 @@ void move_tree(GoalDraw& draw, BodyGroup& group) {
 /// Places a tree of jointed bodies: draws the values of its joints, then moves the tree. A fixed
 /// root stays. Returns whether one of kProposals tries succeeded.
 bool place_tree(GoalDraw& draw, const BodyGroup& tree) {
+  draw.refusals = {};
   for (int k = 0; k < kProposals; ++k) {
     BodyGroup group = tree;
     if (!draw_joint_values(draw, group)) return false;
@@ -102,19 +104,22 @@ bool place_objects(GoalDraw& draw) {
   return true;
 }
 
+bool place_robot_beside(GoalDraw& draw) {
+  if (draw.task.scene.size() == 1 || place_robot(draw)) return true;
+  draw.refusals = {};
+  draw.refusals.count({Refusal::Kind::kNoRobot});
+  return false;
+}
+
 std::optional<Poses> attempt(const Task& task, const std::vector<GoalTerm>& goal, Rng& rng,
                              Refusals& refusals) {
-  GoalDraw draw{
-      task, goal, rng, refusals, {task.start, std::vector<bool>(task.scene.size(), false)}};
+  GoalDraw draw{task, goal, rng, {task.start, std::vector<bool>(task.scene.size(), false)}};
   for (std::size_t i = 1; i < task.scene.size(); ++i)
     draw.state.placed[i] = task.scene.bodies[i].fixed;
-  if (!place_objects(draw)) return std::nullopt;
-  if (task.scene.size() > 1 && !place_robot(draw)) {
-    ++refusals.no_robot;
-    return std::nullopt;
-  }
-  if (!meets_goal(draw)) return std::nullopt;
-  return to_single(std::move(draw.state.poses));
+  if (place_objects(draw) && place_robot_beside(draw) && meets_goal(draw))
+    return to_single(std::move(draw.state.poses));
+  refusals.count_main(draw.refusals);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -124,7 +129,6 @@ std::optional<Poses> sample_goal(const Task& task, Rng& rng, Refusals* refusals)
   for (const GoalTerm& term : task.goal) goal.push_back(tightened(term, task.scene));
   Refusals own;
   Refusals& counts = refusals ? *refusals : own;
-  counts.by_term.resize(goal.size());
   for (int k = 0; k < kAttempts; ++k)
     if (std::optional<Poses> poses = attempt(task, goal, rng, counts)) return poses;
   return std::nullopt;

@@ -1,25 +1,53 @@
 #pragma once
 
+#include <compare>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "core/world/scene.hpp"
 
 namespace rtg::tasks {
 
-/// Why draws of goal states or of start states were refused.
-struct Refusals {
-  std::vector<long> by_term;  // goal states: a term of the goal did not hold
-  // A body was nearer to another one than the clearance, or out of the arena (twice the body).
-  std::map<std::pair<std::size_t, std::size_t>, long> no_room;
-  long no_robot = 0;  // goal states: there was no place for the robot
-  long solved = 0;    // start states: the goal held
+/// Why a draw of a goal state or of a start state was refused.
+struct Refusal {
+  enum class Kind {
+    kTerm,     // goal states: term `a` of the goal did not hold
+    kNoRoom,   // body `a` was nearer to body `b` than the clearance or, if a = b, out of the arena
+    kNoRobot,  // goal states: there was no place for the robot
+    kSolved    // start states: the goal held
+  };
+  Kind kind;
+  std::size_t a = 0, b = 0;
+  auto operator<=>(const Refusal&) const = default;
 };
 
-/// Returns the term that caused at least half of the refusals; nothing if none did.
+/// Counts of refusals.
+class Refusals {
+ public:
+  void count(const Refusal& refusal) { ++counts_[refusal]; }
+
+  /// Counts a try that failed for what was refused most often in its `proposals`: several refusals
+  /// if they are level.
+  void count_main(const Refusals& proposals);
+
+  struct Main {
+    Refusal refusal;
+    double share;  // of the tries
+  };
+  /// Returns what made most tries fail, the first of several that are level; nothing if none
+  /// failed.
+  std::optional<Main> main() const;
+
+ private:
+  long most() const;
+
+  std::map<Refusal, long> counts_;
+  long tries_ = 0;
+};
+
+/// Returns the term that made at least half of the tries fail; nothing if none did.
 std::optional<std::size_t> main_term(const Refusals& refusals);
 
 /// Returns what failed most often, in words to the user: "task.goal.1 did not hold in 93% of the

@@ -26,14 +26,16 @@ std::optional<std::size_t> first_outside(const Task& task, const Poses& poses) {
 /// Returns `poses` if they can be a start; nothing otherwise, see jittered().
 std::optional<Poses> if_legal(const Task& task, Poses poses, Refusals& refusals) {
   poses = to_single(with_closed_joints(task.scene, std::move(poses)));
+  Refusals found;
   if (const auto outside = first_outside(task, poses))
-    ++refusals.no_room[{*outside, *outside}];
+    found.count({Refusal::Kind::kNoRoom, *outside, *outside});
   else if (const auto pair = first_overlap(task.scene, poses, kStartClearance))
-    ++refusals.no_room[*pair];
+    found.count({Refusal::Kind::kNoRoom, pair->first, pair->second});
   else if (succeeded(task, poses))
-    ++refusals.solved;
+    found.count({Refusal::Kind::kSolved});
   else
     return poses;
+  refusals.count_main(found);
   return std::nullopt;
 }
 

@@ -285,13 +285,15 @@ bool maps_onto_itself(std::span<const Part> parts, double angle) {
   return area_in(difference.get()) <= kSameArea * area_in(here.get());
 }
 
-std::optional<std::string> ring_defect(std::span<const Vector2d> ring) {
+std::optional<Vector2d> self_contact(std::span<const Vector2d> ring) {
   const Geometry polygon = polygon_of(ring);
-  const std::unique_ptr<char, void (*)(char*)> reason(GEOSisValidReason_r(geos(), polygon.get()),
-                                                      [](char* text) { GEOSFree_r(geos(), text); });
-  if (!reason) return context().error;
-  const std::string words = reason.get();
-  return words == "Valid Geometry" ? std::nullopt : std::optional(words);
+  GEOSGeometry* place = nullptr;
+  if (GEOSisValidDetail_r(geos(), polygon.get(), 0, nullptr, &place) == 1) return std::nullopt;
+  const Geometry found = checked(place);
+  Vector2d x = Vector2d::Zero();
+  GEOSGeomGetX_r(geos(), found.get(), &x.x());
+  GEOSGeomGetY_r(geos(), found.get(), &x.y());
+  return x;
 }
 
 std::vector<Polygon> disjoint_pieces(std::span<const Part> parts) {

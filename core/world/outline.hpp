@@ -27,9 +27,9 @@ bool in_one_piece(std::span<const Part> parts);
 /// Returns whether a turn by `angle` about the origin maps the union of `parts` onto itself.
 bool maps_onto_itself(std::span<const Part> parts, double angle);
 
-/// Returns why `ring` is not a simple polygon, in words to the user; nothing if it is one. The
-/// vertices may have either orientation.
-std::optional<std::string> ring_defect(std::span<const Vector2d> ring);
+/// Returns a point where the closed line through the vertices of `ring` crosses or touches itself;
+/// nothing if the ring is a simple polygon, of either orientation.
+std::optional<Vector2d> self_contact(std::span<const Vector2d> ring);
 
 /// Splits the union of `parts` into convex polygons of at most 64 vertices that do not overlap; a
 /// single part is one polygon. Round corners have 64 sides per turn.

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "core/world/separation.hpp"
 
 namespace rtg::config {
@@ -21,7 +23,8 @@ namespace {
   return line;
 }
 
-double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
+/// Rounded to 0.001, as 0 may not be exact, and without the sign of -0.
+double degrees(double angle) { return std::round(angle * 180e3 / std::numbers::pi) / 1e3 + 0.0; }
 
 /// Returns width and height of the axis-aligned bounding box of `shape` at angle 0 [m].
 Vector2d extent(const Shape& shape) {
@@ -61,43 +64,60 @@ std::string lengths_in_words(double least, double most) {
   return print("from %.4g to %.4g m", least, most);
 }
 
+/// Returns the box that a polygon with sides along the axes is; nothing of other polygons.
+std::optional<Eigen::AlignedBox2d> as_upright_box(const Polygon& polygon) {
+  Eigen::AlignedBox2d box;
+  for (const Vector2d& v : polygon.vertices) box.extend(v);
+  const double area = area_integrals(polygon.vertices).area;
+  if (area < (1.0 - 1e-9) * box.volume()) return std::nullopt;
+  return box;
+}
+
 std::string region_in_words(const tasks::Region& region, double metre) {
   if (const auto* disc = std::get_if<tasks::Disc>(&region))
     return print("within %.4g m of (%.4g, %.4g)", metre * disc->radius, metre * disc->centre.x(),
                  metre * disc->centre.y());
   if (const auto* half = std::get_if<tasks::HalfPlane>(&region))
     return "at " + half_plane_in_words(half->normal, metre * half->offset);
+  const Polygon& polygon = std::get<Polygon>(region);
+  if (const auto box = as_upright_box(polygon))
+    return print("at x from %.4g to %.4g m, y from %.4g to %.4g m", metre * box->min().x(),
+                 metre * box->max().x(), metre * box->min().y(), metre * box->max().y());
   std::string out = "in the polygon";
-  for (const Vector2d& v : std::get<Polygon>(region).vertices)
+  for (const Vector2d& v : polygon.vertices)
     out += print(" (%.4g, %.4g)", metre * v.x(), metre * v.y());
   return out;
 }
 
 std::string range_in_words(const tasks::StartRange& range, double metre) {
-  return region_in_words(range.region, metre) + ", " + angles_in_words(range.least, range.most);
+  const bool any = range.most - range.least > 2.0 * std::numbers::pi - 1e-3;
+  return region_in_words(range.region, metre) + ", " +
+         (any ? "any angle" : angles_in_words(range.least, range.most));
+}
+
+std::string start_in_words(const tasks::Task& task, std::size_t i) {
+  const double metre = task.units.length;
+  if (!task.start_ranges.empty() && task.start_ranges[i])
+    return range_in_words(*task.start_ranges[i], metre);
+  const Pose& start = task.start[i];
+  return print("at (%.3g, %.3g), %.4g deg", metre * start.x, metre * start.y, degrees(start.theta));
 }
 
 std::string body_line(const tasks::Task& task, std::size_t i, std::size_t width) {
   const Body& body = task.scene.bodies[i];
-  const Pose& start = task.start[i];
   const double metre = task.units.length,
                mass = mass_of(body).mass * task.units.density * metre * metre;
   const std::string weight = body.fixed ? "fixed" : print("%.3g kg", mass);
-  return print("  %-*s  %-8s  %s  %9s  friction %.2f  at (%.3g, %.3g), %.1f deg\n",
-               static_cast<int>(width), body.name.c_str(), body.kind.c_str(),
-               shape_in_words(body.shape, metre).c_str(), weight.c_str(), body.friction,
-               metre * start.x, metre * start.y, degrees(start.theta));
+  return print("  %-*s  %-8s  %s  %9s  friction %.2f  %s\n", static_cast<int>(width),
+               body.name.c_str(), body.kind.c_str(), shape_in_words(body.shape, metre).c_str(),
+               weight.c_str(), body.friction, start_in_words(task, i).c_str());
 }
 
 std::string bodies_in_words(const tasks::Task& task) {
   std::size_t width = 0;
   for (const Body& body : task.scene.bodies) width = std::max(width, body.name.size());
   std::string out = "bodies, the first is the robot\n";
-  for (std::size_t i = 0; i < task.scene.size(); ++i) {
-    out += body_line(task, i, width);
-    if (!task.start_ranges.empty() && task.start_ranges[i])
-      out += "    or anywhere " + range_in_words(*task.start_ranges[i], task.units.length) + '\n';
-  }
+  for (std::size_t i = 0; i < task.scene.size(); ++i) out += body_line(task, i, width);
   return out;
 }
 
@@ -230,8 +250,7 @@ std::string discount_in_words(const Config& config) {
   std::string out = print("discount %.4g", config.learner_discount());
   if (config.train.discount == 0.0) return out + " (the task's, as train.discount is 0)";
   if (config.train.discount == config.task.discount) return out;
-  return out + print(" (train.discount; task.discount, %.4g, would hold if that were 0)",
-                     config.task.discount);
+  return out + print(" (train.discount; 0 there takes task.discount, %.4g)", config.task.discount);
 }
 
 std::string training_in_words(const Config& config) {

@@ -100,8 +100,10 @@ std::vector<Polygon> read_vertices(const ConfigNode& list, const std::string& pa
     if ((ring[(k + 1) % ring.size()] - ring[k]).norm() < kMinSize)
       refuse("edge at vertex " + std::to_string(k) + " is shorter than " + metres(kMinSize, units),
              list.origin, path);
-  if (const std::optional<std::string> defect = ring_defect(ring))
-    refuse("is not simple: " + *defect, list.origin, path);
+  if (const std::optional<Vector2d> x = self_contact(ring))
+    refuse("crosses or touches itself at [" + number_text(units.length * x->x()) + ", " +
+               number_text(units.length * x->y()) + "]",
+           list.origin, path);
   if (area_integrals(ring).area < 0.0)
     refuse("is clockwise; list the vertices counter-clockwise", list.origin, path);
   std::vector<Polygon> pieces = convex_pieces(ring);

@@ -261,6 +261,28 @@ TEST(GoalTerms, WhatCannotBeMetIsNamed) {
   EXPECT_EQ(main_reason(refusals, task.scene).substr(0, 11), "task.goal.0");
 }
 
+TEST(GoalTerms, WhatMadeATryFailIsNamedNotProposalsThatWereMadeAgain) {
+  Task task = testing::gathering();
+  task.goal = {{"box", CentreIn{Disc{{0, 0}, 1.5}}}, {"box", KeepsFrom{"box", 9.0}}};
+  Rng rng(1);
+  Refusals refusals;
+  EXPECT_FALSE(sample_goal(task, rng, &refusals));
+  EXPECT_EQ(main_term(refusals), 1u) << main_reason(refusals, task.scene);
+}
+
+TEST(GoalTerms, AllTermsThatFailAreCounted) {
+  Task task = letter_and_box();
+  task.goal = {{"box", KeepsFrom{"t", 1.0}}, {"box", Touches{"t", 0.1}}};
+  Rng rng(1);
+  Refusals refusals;
+  EXPECT_FALSE(sample_goal(task, rng, &refusals));
+  EXPECT_GT(refusals.main()->share, 0.5);
+  task.goal = {{"box", Touches{"t", 0.1}}, {"box", KeepsFrom{"t", 90.0}}};
+  refusals = {};
+  EXPECT_FALSE(sample_goal(task, rng, &refusals));
+  EXPECT_EQ(main_term(refusals), 1u) << main_reason(refusals, task.scene);
+}
+
 TEST(GoalMarks, AreRegionsAndTargetOutlines) {
   Task task = letter_and_box();
   task.goal = {{"t", Covers{{1, 2, 0.5}, 0.9}}, {"box", Stays{0.3}}, {"box", AngleIn{0, 1}}};

@@ -165,11 +165,10 @@ TEST(DisjointPieces, OfRoundPartsAreFewAndAddUpToTheUnion) {
   }
 }
 
-TEST(RingDefect, TellsWhereARingCrossesItself) {
+TEST(SelfContact, IsWhereARingCrossesItself) {
   const std::vector<Vector2d> bow{{0, 0}, {1, 1}, {1, 0}, {0, 1}}, box_ring = box(1, 2).vertices;
-  ASSERT_TRUE(ring_defect(bow).has_value());
-  EXPECT_NE(ring_defect(bow)->find("0.5 0.5"), std::string::npos);
-  EXPECT_EQ(ring_defect(box_ring), std::nullopt);
+  EXPECT_EQ(self_contact(bow), Vector2d(0.5, 0.5));
+  EXPECT_EQ(self_contact(box_ring), std::nullopt);
 }
 
 TEST(Outline, OfAFrameHasAHole) {
