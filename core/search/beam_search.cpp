@@ -18,7 +18,7 @@ BeamSearch::BeamSearch(const tasks::Task& task, const SearchConfig& config, Pose
 
 void BeamSearch::make_roots(const ReplayBatch& replay, SearchStats& stats) {
   std::vector<ReplayJob> goals;
-  for (Poses& goal : goal_roots(task_, config_, target_, rng_, stats))
+  for (Poses& goal : goal_roots(task_, config_, metric_, target_, rng_, stats))
     goals.push_back({std::move(goal), kSettle});
   for (const ReplayResult& settled : replay(goals)) {
     if (!settled.ok) continue;
@@ -79,7 +79,8 @@ std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int
   for (const Predecessor& p : steps)
     entries.push_back({p.start_distance, metric_.cell(p.start), metric_.layout_cell(p.start)});
   std::vector<Predecessor> best;
-  for (const std::size_t k : select_beam(entries, config_, seen, times))
+  const BeamLimits limits{times * config_.breadth, times * config_.nodes_per_layout};
+  for (const std::size_t k : select_beam(entries, limits, seen))
     best.push_back(std::move(steps[k]));
   return best;
 }

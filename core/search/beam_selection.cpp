@@ -6,16 +6,16 @@
 
 namespace rtg::search {
 
-std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const SearchConfig& config,
-                                     std::unordered_set<std::uint64_t>& seen, int times) {
+std::vector<std::size_t> select_beam(std::span<const BeamEntry> entries, const BeamLimits& limits,
+                                     std::unordered_set<std::uint64_t>& seen) {
   std::vector<std::size_t> beam(entries.size());
   std::iota(beam.begin(), beam.end(), std::size_t{0});
   std::ranges::stable_sort(beam, {}, [&](std::size_t k) { return entries[k].score; });
   std::unordered_map<std::uint64_t, int> layouts;
-  int left = times * config.breadth;
+  int left = limits.nodes;
   std::erase_if(beam, [&](std::size_t k) {
     int& alike = layouts[entries[k].layout];
-    if (left == 0 || alike == times * config.nodes_per_layout) return true;
+    if (left == 0 || alike == limits.nodes_per_layout) return true;
     if (!seen.insert(entries[k].cell).second) return true;
     ++alike;
     --left;

@@ -35,7 +35,8 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
   }
   beam_.clear();
   std::vector<Transition> steps;
-  for (const std::size_t k : select_beam(entries, config_, seen_)) {
+  const BeamLimits limits{config_.forward_breadth, config_.nodes_per_layout};
+  for (const std::size_t k : select_beam(entries, limits, seen_)) {
     if (found[k].step.success && solved_ == 0) solved_ = nodes_.size();
     steps.push_back(found[k].step);
     beam_.push_back(nodes_.size());

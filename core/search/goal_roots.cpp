@@ -46,8 +46,8 @@ std::optional<Poses> drawn_goal(const tasks::Task& task, Rng& rng, SearchStats& 
 }
 
 std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
-                              const Poses& target, Rng& rng, SearchStats& stats) {
-  const StateMetric metric(task);
+                              const StateMetric& metric, const Poses& target, Rng& rng,
+                              SearchStats& stats) {
   tasks::Task turned = task;  // the robot does not turn on the way from the target to the goal
   turned.start[0].theta = target[0].theta;
   std::unordered_set<std::uint64_t> seen;

@@ -6,6 +6,7 @@
 #include "core/search/search_config.hpp"
 #include "core/search/search_stats.hpp"
 #include "core/search/start_distance.hpp"
+#include "core/search/state_metric.hpp"
 #include "core/tasks/task.hpp"
 
 namespace rtg::search {
@@ -22,10 +23,11 @@ inline constexpr int kNodesPerRoot = 4;
 std::optional<Poses> drawn_goal(const tasks::Task& task, Rng& rng, SearchStats& stats);
 
 /// Draws goal states and returns up to config.breadth / kNodesPerRoot (rounded up) distinct ones,
-/// the nearest to `target` by start_distance(), with its angle of the robot. Makes at most
-/// config.breadth · config.root_draws draws by sample_goal() and applies with_swapped_twins() to
-/// each state. The states are not yet at rest. Counts failed draws in `stats`.
+/// the nearest to `target` by start_distance() with `metric`, with its angle of the robot. Makes at
+/// most config.breadth · config.root_draws draws by sample_goal() and applies with_swapped_twins()
+/// to each state. The states are not yet at rest. Counts failed draws in `stats`.
 std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& config,
-                              const Poses& target, Rng& rng, SearchStats& stats);
+                              const StateMetric& metric, const Poses& target, Rng& rng,
+                              SearchStats& stats);
 
 }  // namespace rtg::search

@@ -17,11 +17,19 @@ inline constexpr std::array<std::string_view, 5> kGenerators{"rrbs", "naive", "f
                                                              "random"};
 
 /// Parameters of the beam search and of the stored data set.
+///
+/// `breadth`: many narrow trees teach more than few wide ones, at the same CPU time per transition.
+/// With 100 instead of 10, success first reaches 0.95 after 15,000 instead of 10,000 interactions
+/// of Gathering and 22,500 instead of 17,500 of Sorting; ArtManip is level. Where starts are drawn
+/// from ranges, each tree tells of one of them: of four discs that lie anywhere (240,000
+/// transitions, 4 gradient steps) a policy has success 0.02 after 20,000 interactions on 7 trees
+/// with 100, 0.05 on 24 with 25, 0.15 on 150 with 4 (one seed each).
 struct SearchConfig {
   Generator generator = Generator::kRrbs;
   int transitions = 60000;         // stored in all, branches included
   int branches = 4;                // other headings simulated in the state of each stored step
-  int breadth = 100;               // B, nodes kept per layer
+  int breadth = 10;                // B, nodes kept per layer of a tree
+  int forward_breadth = 100;       // the same in searches forwards
   int plans_per_node = 4;          // plans simulated per layer, as a multiple of breadth
   double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
   int depth = 100;                 // D, layers per tree at most; no more than task.horizon
@@ -36,11 +44,16 @@ struct SearchConfig {
   template <class Visitor>
   void visit(Visitor& v) {
     v.choice("generator", generator, kGenerators, "method that generates the transitions");
-    v.integer("transitions", transitions, 1, 100000000,
-              "transitions to store, branches included; default: 20000 per object, at least 60000");
+    v.integer(
+        "transitions", transitions, 1, 100000000,
+        "transitions to store, branches included; default: 60000 per object whose start is drawn "
+        "from a range, 20000 per other one, at least 60000");
     v.integer("branches", branches, 0, 359,
               "other headings also simulated and stored at each stored step");
-    v.integer("breadth", breadth, 1, 100000, "beam width: largest number of nodes per layer");
+    v.integer("breadth", breadth, 1, 100000,
+              "beam width: largest number of nodes per layer of a tree");
+    v.integer("forward_breadth", forward_breadth, 1, 100000,
+              "beam width of searches forwards, of the generator forward and the planner");
     v.integer("plans_per_node", plans_per_node, 1, 1000,
               "plans simulated per layer, as a multiple of breadth");
     v.number("whole_plan_share", whole_plan_share, 0.0, 1.0,

@@ -208,13 +208,17 @@ void check_sections(const ConfigNode& root) {
                           listed(kSections));
 }
 
-/// Returns the number of transitions of tasks that do not tell it: more objects have to be moved in
-/// more steps. With 60,000 the budget is gone before a tree of eight boxes reaches the start.
+/// Returns the number of transitions of tasks that do not tell it. More objects have to be moved in
+/// more steps: with 60,000 the budget is gone before a tree of eight boxes reaches the start. Where
+/// starts are drawn from ranges, each tree tells of one of them.
 int default_transitions(const tasks::Task& task) {
-  constexpr int kPerObject = 20000;
-  int objects = 0;
-  for (std::size_t i = 1; i < task.scene.size(); ++i) objects += !task.scene.bodies[i].fixed;
-  return std::max(search::SearchConfig{}.transitions, kPerObject * objects);
+  constexpr int kPerObject = 20000, kPerRange = 60000;
+  int sum = 0;
+  for (std::size_t i = 1; i < task.scene.size(); ++i) {
+    const bool ranges = !task.start_ranges.empty() && task.start_ranges[i].has_value();
+    if (!task.scene.bodies[i].fixed) sum += ranges ? kPerRange : kPerObject;
+  }
+  return std::max(search::SearchConfig{}.transitions, sum);
 }
 
 Config read_config(const ConfigNode& root) {

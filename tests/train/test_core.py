@@ -120,7 +120,7 @@ def test_joints_are_reached_where_each_goal_of_theirs_is_met() -> None:
 
 
 def test_a_plan_says_how_many_pushes_its_search_made() -> None:
-    settings = ["run.method=planner", "search.breadth=4", "search.depth=3"]
+    settings = ["run.method=planner", "search.forward_breadth=4", "search.depth=3"]
     config = _core.Config.from_file(paths.CONFIG / "gathering.yaml", settings)
     states, pushes = _core.plan(config, config.task.start[None])
     np.testing.assert_array_equal(states, config.task.start[None])  # it found no plan

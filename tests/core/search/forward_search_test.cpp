@@ -23,7 +23,7 @@ struct ForwardSearchTest : ::testing::Test, testing::DraggingWorld {
   Poses start = task.start;
 
   ForwardSearchTest() {
-    config.breadth = 12;
+    config.forward_breadth = 12;
     config.depth = 20;
   }
 };
@@ -123,7 +123,7 @@ TEST(GenerateForward, StoresWhatItsBeamsKeepWithBranches) {
   SearchConfig config;
   config.generator = Generator::kForward;
   config.transitions = 1000;
-  config.breadth = 10;
+  config.forward_breadth = 10;
   const auto run = testing::run_naive(testing::gathering(), config, 3, 1);
   ASSERT_EQ(run.stored.size(), 1000U);
   const auto branches = std::ranges::count(run.stored, Source::kBranch, &Transition::source);

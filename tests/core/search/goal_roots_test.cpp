@@ -141,7 +141,7 @@ SearchConfig of(int breadth, int root_draws) {
 std::vector<Poses> roots(const tasks::Task& task, const SearchConfig& config, std::uint64_t seed) {
   Rng rng(seed);
   SearchStats stats;
-  return goal_roots(task, config, task.start, rng, stats);
+  return goal_roots(task, config, StateMetric(task), task.start, rng, stats);
 }
 
 TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
@@ -149,7 +149,7 @@ TEST(GoalRoots, DrawsInVainAreCountedAndEndNothingUntilThereAreTooMany) {
   task.goal = testing::near_origin(0.04);  // no room for three
   Rng rng(1);
   SearchStats stats;
-  EXPECT_TRUE(goal_roots(task, of(20, 4), task.start, rng, stats).empty());
+  EXPECT_TRUE(goal_roots(task, of(20, 4), StateMetric(task), task.start, rng, stats).empty());
   EXPECT_EQ(stats.undrawn_goals, 20);
   EXPECT_EQ(stats.goal_draws, 20);
   const std::string reason = main_reason(stats.goal_refusals, task.scene);
@@ -162,7 +162,7 @@ TEST(GoalRoots, OnlyDrawsInVainInARowEndTheDrawing) {
                          {0.0, 0.0}, 0.88}}}};  // so tight that two of five draws are in vain
   Rng rng(1);
   SearchStats stats;
-  EXPECT_EQ(goal_roots(task, of(15, 4), task.start, rng, stats).size(), 4U);
+  EXPECT_EQ(goal_roots(task, of(15, 4), StateMetric(task), task.start, rng, stats).size(), 4U);
   EXPECT_GT(stats.undrawn_goals, 20);
   EXPECT_GT(stats.goal_draws, stats.undrawn_goals);
 }
@@ -228,7 +228,7 @@ TEST(GoalRoots, HaveTheRobotsAngleOfTheTarget) {
   config.breadth = 8;
   Rng rng(1);
   SearchStats stats;
-  const std::vector<Poses> roots = goal_roots(task, config, target, rng, stats);
+  const std::vector<Poses> roots = goal_roots(task, config, StateMetric(task), target, rng, stats);
   ASSERT_FALSE(roots.empty());
   for (const Poses& root : roots) EXPECT_EQ(root[0].theta, 0.5);
 }

@@ -45,7 +45,19 @@ TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
       {"shards", 3},
       {"shard", 2},
   };
-  testing::expect_each_field_matters(config, others, {}, stored);
+  testing::expect_each_field_matters(config, others, {"forward_breadth"}, stored);
+}
+
+TEST(SearchConfig, ForwardBreadthIsThatOfSearchesForwards) {
+  SearchConfig config;
+  config.generator = Generator::kForward;
+  config.transitions = 400;
+  config.forward_breadth = 5;
+  const std::vector<Transition> usual = stored(config);
+  config.breadth = 3;
+  EXPECT_EQ(stored(config), usual);
+  config.forward_breadth = 3;
+  EXPECT_NE(stored(config), usual);
 }
 
 }  // namespace

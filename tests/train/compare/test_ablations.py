@@ -43,7 +43,7 @@ def test_all_departures_together_are_the_paper_but_for_how_it_is_measured():
 
 def test_every_setting_of_the_search_has_an_ablation_or_is_a_size_or_of_the_method():
     search = effective_config.values(effective_config.load(FILE))["search"]
-    sizes = {"transitions", "breadth", "depth", "shard", "shards"}
+    sizes = {"transitions", "breadth", "forward_breadth", "depth", "shard", "shards"}
     set_by_method = {"generator", "randomise"}
     ablated = {*BRANCH_ABLATIONS, *TREE_ABLATIONS}
     assert ablated == set(search) - sizes - set_by_method

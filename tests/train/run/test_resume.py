@@ -66,7 +66,7 @@ def test_a_run_of_another_version_is_refused_and_left_alone(folder, capsys):
     file.write_text(re.sub(r"\n  breadth: .*", "", file.read_text()))
     before = file.read_bytes()
     assert cli.main(["--resume", "--out", str(folder)]) == 2
-    assert capsys.readouterr().err.startswith(f"rtg: {file}: has no line 'breadth: 100'")
+    assert capsys.readouterr().err.startswith(f"rtg: {file}: has no line 'breadth: 10'")
     assert file.read_bytes() == before
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, Protocol
@@ -234,10 +234,11 @@ def robustness(path: Path, title: str, rows: Sequence[RobustnessRow]) -> None:
         save(figure, path)
 
 
-def _draw_scene(axis: Axes, task: TaskLike, body: int) -> None:
-    """Draws the arena, the outlines of all bodies at the start, and the goal of `body`.
+def _draw_scene(axis: Axes, task: TaskLike, body: int, drawn: Container[int]) -> None:
+    """Draws the arena, the outlines of bodies at the start, and the goal of `body`.
 
-    The outline of `body` is bold. Its goal consists of the marks of the terms on its kind.
+    The outline of `body` is bold; bodies whose start is `drawn` have none. The goal consists of the
+    marks of the terms on the kind of `body`.
     """
     a = task.arena
     for mark in task.goal_marks:
@@ -245,7 +246,7 @@ def _draw_scene(axis: Axes, task: TaskLike, body: int) -> None:
             axis.fill(*mark.ring.T, color=_rgb(mark_colour(task, mark)), alpha=0.18, lw=0)
     for other, rings in enumerate(task.outlines):
         colour = _rgb(ROBOT) if other == 0 else _rgb(INK)
-        for ring in rings:
+        for ring in () if other in drawn else rings:
             xy = outline(ring, task.start[other])
             closed = np.vstack([xy, xy[:1]])
             axis.plot(*closed.T, color=colour, lw=1.8 if other == body else 0.7)
@@ -286,7 +287,7 @@ def coverage(
         for axis in axes.flat[len(bodies) :]:
             axis.set_visible(False)
         for axis, body in zip(axes.flat, bodies, strict=False):
-            _draw_scene(axis, task, body)
+            _draw_scene(axis, task, body, start_regions)
             dots = axis.scatter(
                 poses[order, body, 0],
                 poses[order, body, 1],
@@ -306,10 +307,10 @@ def coverage(
         bar = figure.colorbar(ScalarMappable(dots.norm, dots.cmap), ax=axes, shrink=0.85, pad=0.02)
         bar.set_label("actions until success, over all trees")
         bar.locator = MaxNLocator(integer=True)
-        in_ranges = ", in the middle of ranges\ndashed: where the centre of the object starts"
+        in_ranges = "\ndashed: where the centre of the object starts"
         figure.supxlabel(
             "dots: centres of the object in the search's nodes\n"
-            "crosses: in the starts that the trees grew towards\noutlines: start layout"
+            "crosses: in the starts that the trees grew towards\noutlines: bodies at the start"
             f"{in_ranges if start_regions.keys() & set(bodies) else ''}\n"
             "shaded: goal of the centre, or of a mean that includes it\n"
             f"frame: arena, {2 * task.arena / task.metre:g} m wide",
