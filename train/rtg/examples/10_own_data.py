@@ -35,7 +35,7 @@ def demonstrations(task: rtg.Task, episodes: int) -> rtg.Transitions:
     return rtg.Transitions(before, np.array(actions), then, task.succeeded(then), source)
 
 
-def main(folder: Path, transitions: int = 10000, interactions: int = 15000) -> None:
+def main(folder: Path, transitions: int = 10000, interactions: int = 30000) -> None:
     task = rtg.load_task("gathering")
     own = demonstrations(task, 30)
     print(f"{len(own)} pushes of the script, {own.success.sum()} of 30 episodes succeed")
