@@ -20,10 +20,10 @@ inline constexpr std::array<std::string_view, 5> kGenerators{"rrbs", "naive", "f
 ///
 /// `breadth`: many narrow trees teach more than few wide ones, at the same CPU time per transition.
 /// With 100 instead of 10, success first reaches 0.95 after 15,000 instead of 10,000 interactions
-/// of Gathering and 22,500 instead of 17,500 of Sorting; ArtManip is level. Where starts are drawn
-/// from ranges, each tree tells of one of them: of four discs that lie anywhere (240,000
-/// transitions, 4 gradient steps) a policy has success 0.02 after 20,000 interactions on 7 trees
-/// with 100, 0.05 on 24 with 25, 0.15 on 150 with 4 (one seed each).
+/// of Gathering and 22,500 instead of 17,500 of Sorting. Chains keep 100: their first layers are
+/// the costliest. Where starts are drawn from ranges, each tree tells of one of them: of four discs
+/// that lie anywhere (240,000 transitions, 4 gradient steps) a policy has success 0.02 after 20,000
+/// interactions on 7 trees with 100, 0.05 on 24 with 25, 0.13 on 150 with 4 (one seed each).
 struct SearchConfig {
   Generator generator = Generator::kRrbs;
   int transitions = 60000;         // stored in all, branches included

@@ -201,7 +201,8 @@ double read_length(const ConfigNode& node, const std::string& path, double least
   const double metres = read_number(node, path, legal);
   const double length = units.length_of(metres);
   if (length < least || length > most)
-    throw ConfigError(node.origin, path, node.scalar + " is out of range", legal);
+    throw ConfigError(node.origin, path, node.scalar + " is out of range",
+                      legal + (units.length == 1.0 ? "" : ", for a robot of this size"));
   return length;
 }
 
