@@ -39,7 +39,7 @@ def test_the_core_learns_what_pytorch_does(rules: dict[str, bool]) -> None:
     """To rounding, over 30 steps; some targets are raised by bounds.
 
     Adam divides by the size of the gradient: of small ones the rounding shows, which depends on the
-    processor in PyTorch, by up to 2.3e-5 so far. The largest weights move by more than 5e-3.
+    processor in PyTorch. On one processor a single one of 121,794 weights differs by 2.3e-5.
     """
     rng = np.random.default_rng(0)
     batches = [random_batch(rng, scale=1.0) for _ in range(STEPS)]
@@ -48,7 +48,9 @@ def test_the_core_learns_what_pytorch_does(rules: dict[str, bool]) -> None:
     ours, theirs = (learned(batches, core, **rules) for core in (True, False))
     for name in ("online", "target", "mean"):
         one, other = (weights(getattr(learner, name)) for learner in (ours, theirs))
-        th.testing.assert_close(one, other, rtol=0, atol=1e-4)
+        differences = (one - other).abs()
+        assert (differences > 2e-5).sum() <= 3 and differences.max() < 4e-5
+        assert differences.quantile(0.99) < 1e-6
     moved = (weights(ours.online) - weights(model(**rules).online)).abs()
     assert moved.max() > 5e-3
     our_figures, their_figures = ours.statistics.pop(), theirs.statistics.pop()

@@ -245,8 +245,10 @@ def _draw_scene(axis: Axes, task: TaskLike, body: int, drawn: Container[int]) ->
         if mark.kind in ("*", task.kinds[body]):
             axis.fill(*mark.ring.T, color=_rgb(mark_colour(task, mark)), alpha=0.18, lw=0)
     for other, rings in enumerate(task.outlines):
+        if other in drawn:
+            continue
         colour = _rgb(ROBOT) if other == 0 else _rgb(INK)
-        for ring in () if other in drawn else rings:
+        for ring in rings:
             xy = outline(ring, task.start[other])
             closed = np.vstack([xy, xy[:1]])
             axis.plot(*closed.T, color=colour, lw=1.8 if other == body else 0.7)

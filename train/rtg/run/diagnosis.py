@@ -13,7 +13,7 @@ from rtg.run.effective_config import TREE_GENERATORS
 _WELL = 0.9  # success rate that needs no explanation
 _UNDRAWN = 0.05  # share of draws of goal states in vain that is told
 _SOLVED = 0.5  # least share of reverse solves
-_COVERED = 0.001  # least share of own transitions that begin at a start
+_COVERED = 0.005  # least share of own transitions that begin at a start
 _RANKED = 0.5  # least rank correlation of Q with the simulator
 _MANY_STEPS = 4  # gradient steps of a round, beyond which more are not advised
 _THERE = 0.4  # distance at which an object is in its place, in the unit of poses
