@@ -12,8 +12,8 @@
 namespace rtg::search {
 
 /// A beam search forwards from one start, in the simulator, without reverse steps. It tries every
-/// heading in every state of the beam. States are ranked by goal_distance(). The beam is selected
-/// by select_beam(), as in BeamSearch.
+/// heading in every state of the beam. States are ranked by goal_distance(). The beam, of at
+/// most config.forward_breadth nodes, is selected by select_beam(), as in BeamSearch.
 class ForwardSearch {
  public:
   /// `task` and `config` must outlive the search.

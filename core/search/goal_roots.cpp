@@ -16,8 +16,8 @@ constexpr int kMaxFailures = 20;  // consecutive failed draws that end the drawi
 
 }  // namespace
 
-Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Poses& target) {
-  const StateMetric metric(task.scene);
+Poses with_swapped_twins(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
+                         const Poses& target) {
   const std::vector<std::vector<std::size_t>> groups = interchangeable(task);
   Poses best = poses;
   double least = metric.layout_distance(best, target);
@@ -57,7 +57,7 @@ std::vector<Poses> goal_roots(const tasks::Task& task, const SearchConfig& confi
     failures = goal ? 0 : failures + 1;
     if (failures == kMaxFailures) break;
     if (!goal) continue;
-    Poses root = with_swapped_twins(task, *goal, target);
+    Poses root = with_swapped_twins(task, metric, *goal, target);
     if (!seen.insert(metric.cell(root)).second) continue;
     drawn.emplace_back(start_distance(task, metric, root, target), std::move(root));
   }

@@ -13,7 +13,8 @@ namespace rtg::search {
 
 /// Swaps the poses of interchangeable() objects until no swap reduces the layout_distance() to
 /// `target`. Returns the result.
-Poses with_swapped_twins(const tasks::Task& task, const Poses& poses, const Poses& target);
+Poses with_swapped_twins(const tasks::Task& task, const StateMetric& metric, const Poses& poses,
+                         const Poses& target);
 
 /// Nodes of a full beam per root. With a root for each, the first layer takes three times as long,
 /// as its objects touch, and Gathering is learned no faster (three seeds).

@@ -66,8 +66,9 @@ void set_shortfalls(GenerationReport& report, const SearchConfig& config) {
   if (report.coverage.transitions < config.transitions)
     report.shortfalls.push_back(
         search + found + " transitions of the " + std::to_string(config.transitions) +
-        " asked for and then nothing more, see generation.json; a wider one "
-        "may find more (search.breadth, search.plans_per_node)");
+        " asked for and then nothing more, see generation.json; a wider one may find more (" +
+        (config.generator == Generator::kForward ? "search.forward_breadth)"
+                                                 : "search.breadth, search.plans_per_node)"));
 }
 
 std::string to_json(const GenerationReport& r) {

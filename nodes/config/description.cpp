@@ -28,13 +28,11 @@ double degrees(double angle) { return std::round(angle * 180e3 / std::numbers::p
 
 /// Returns width and height of the axis-aligned bounding box of `shape` at angle 0 [m].
 Vector2d extent(const Shape& shape) {
-  Vector2d low = Vector2d::Constant(INFINITY), high = -low;
+  Eigen::AlignedBox2d box;
   for (const auto& [core, radius] : shape.parts())
-    for (const Vector2d& v : core.vertices) {
-      low = low.cwiseMin((v.array() - radius).matrix());
-      high = high.cwiseMax((v.array() + radius).matrix());
-    }
-  return high - low;
+    for (const Vector2d& v : core.vertices)
+      for (const double r : {-radius, radius}) box.extend(v + Vector2d::Constant(r));
+  return box.sizes();
 }
 
 std::string shape_in_words(const Shape& shape, double metre) {

@@ -101,8 +101,8 @@ std::vector<Polygon> read_vertices(const ConfigNode& list, const std::string& pa
       refuse("edge at vertex " + std::to_string(k) + " is shorter than " + metres(kMinSize, units),
              list.origin, path);
   if (const std::optional<Vector2d> x = self_contact(ring))
-    refuse("crosses or touches itself at [" + number_text(units.length * x->x()) + ", " +
-               number_text(units.length * x->y()) + "]",
+    refuse("crosses or touches itself at [" + length_text(x->x(), units) + ", " +
+               length_text(x->y(), units) + "]",
            list.origin, path);
   if (area_integrals(ring).area < 0.0)
     refuse("is clockwise; list the vertices counter-clockwise", list.origin, path);

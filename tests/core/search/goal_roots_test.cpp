@@ -49,7 +49,7 @@ double least_distance(const tasks::Task& task, const Poses& poses, const Poses& 
 TEST(WithSwappedTwins, LeavesBodiesWithJointsAlone) {
   const tasks::Task task = testing::art_manip();
   const Poses mixed = exchanged(task.start, 1, 4);
-  EXPECT_EQ(with_swapped_twins(task, mixed, task.start), mixed);
+  EXPECT_EQ(with_swapped_twins(task, StateMetric(task.scene), mixed, task.start), mixed);
 }
 
 TEST(WithSwappedTwins, UndoesEveryExchangeOfThreeAlike) {
@@ -58,7 +58,7 @@ TEST(WithSwappedTwins, UndoesEveryExchangeOfThreeAlike) {
   do {
     const Poses mixed{task.start[0], task.start[order[0]], task.start[order[1]],
                       task.start[order[2]]};
-    EXPECT_EQ(with_swapped_twins(task, mixed, task.start), task.start);
+    EXPECT_EQ(with_swapped_twins(task, StateMetric(task.scene), mixed, task.start), task.start);
   } while (std::ranges::next_permutation(order).found);
 }
 
@@ -68,7 +68,7 @@ TEST(WithSwappedTwins, IsNoFartherThanBeforeNorThanAfterAnyFurtherExchange) {
   int nearer = 0;
   for (int k = 0; k < kStates; ++k) {
     const Poses poses = random_poses(task, rng), target = random_poses(task, rng);
-    const Poses out = with_swapped_twins(task, poses, target);
+    const Poses out = with_swapped_twins(task, StateMetric(task.scene), poses, target);
     const double least = distance(task, out, target);
     EXPECT_LE(least, distance(task, poses, target));
     nearer += least < distance(task, poses, target);
@@ -87,7 +87,8 @@ TEST(WithSwappedTwins, IsTheNearestLabellingOfThreeAlmostAlways) {
   for (int k = 0; k < kStates; ++k) {
     const Poses poses = random_poses(task, rng), target = random_poses(task, rng);
     const double least = least_distance(task, poses, target);
-    const double found = distance(task, with_swapped_twins(task, poses, target), target);
+    const double found =
+        distance(task, with_swapped_twins(task, StateMetric(task.scene), poses, target), target);
     EXPECT_GE(found, least - 1e-9);  // sums in another order
     nearest += found <= least + 1e-9;
   }
@@ -101,7 +102,8 @@ TEST(WithSwappedTwins, ExchangesOnlyWhatLooksTheSame) {
   Rng rng(63);
   for (int k = 0; k < kStates; ++k) {
     const Poses poses = random_poses(task, rng);
-    const Poses out = with_swapped_twins(task, poses, random_poses(task, rng));
+    const Poses out =
+        with_swapped_twins(task, StateMetric(task.scene), poses, random_poses(task, rng));
     EXPECT_EQ(out[0], poses[0]);
     for (const std::size_t i : {1U, 3U})
       EXPECT_TRUE((out[i] == poses[i] && out[i + 1] == poses[i + 1]) ||
@@ -114,7 +116,7 @@ TEST(WithSwappedTwins, EveryDifferenceOfLooksCounts) {
     tasks::Task task = gathering();
     change(task.scene.bodies[1]);
     const Poses crossed = exchanged(task.start, 1, 2);
-    return with_swapped_twins(task, crossed, task.start) == crossed;
+    return with_swapped_twins(task, StateMetric(task.scene), crossed, task.start) == crossed;
   };
   EXPECT_FALSE(stays([](Body& b) { b.name = "another"; }));
   EXPECT_TRUE(stays([](Body& b) { b.kind = "other"; }));
@@ -128,7 +130,7 @@ TEST(WithSwappedTwins, TheRobotStaysWhateverLooksLikeIt) {
   tasks::Task task = gathering();
   task.scene.bodies[1] = task.scene.bodies[0];
   const Poses crossed = exchanged(task.start, 0, 1);
-  EXPECT_EQ(with_swapped_twins(task, crossed, task.start), crossed);
+  EXPECT_EQ(with_swapped_twins(task, StateMetric(task.scene), crossed, task.start), crossed);
 }
 
 SearchConfig of(int breadth, int root_draws) {
@@ -176,7 +178,7 @@ TEST(GoalRoots, AreDistinctGoalsNearestFirst) {
   double before = 0.0;
   for (const Poses& root : found) {
     EXPECT_TRUE(succeeded(task, root));
-    EXPECT_EQ(with_swapped_twins(task, root, task.start), root);
+    EXPECT_EQ(with_swapped_twins(task, StateMetric(task.scene), root, task.start), root);
     EXPECT_TRUE(cells.insert(metric.cell(root)).second);
     const double left = start_distance(task, metric, root, task.start);
     EXPECT_GE(left, before);

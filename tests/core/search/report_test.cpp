@@ -125,6 +125,15 @@ TEST(Report, TellsThatFewerTransitionsWereFoundThanAskedFor) {
   }
 }
 
+TEST(Report, NamesTheBreadthOfTheSearchThatFellShort) {
+  GenerationReport report;
+  SearchConfig config;
+  config.generator = Generator::kForward;
+  set_shortfalls(report, config);
+  ASSERT_EQ(report.shortfalls.size(), 1U);
+  EXPECT_TRUE(report.shortfalls[0].ends_with("may find more (search.forward_breadth)"));
+}
+
 TEST(Report, OfNothingHasEmptyListsAndNoDepth) {
   const std::string text = to_json({});
   EXPECT_NE(text.find(R"("trees":0,"starts_reached":0,"start_depth":null,)"), std::string::npos);

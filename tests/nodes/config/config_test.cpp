@@ -153,6 +153,16 @@ TEST(Config, TasksOfManyObjectsGetMoreTransitionsUnlessTheFileTellsHowMany) {
   EXPECT_EQ(load_config(kConfig / "art_manip.yaml").search.transitions, 90000);
 }
 
+TEST(Config, ObjectsThatStartInRangesCountThreefold) {
+  std::vector<std::string> overrides{"task.bodies.1.start={x: [-5, -2], y: [0, 4]}"};
+  const auto transitions = [&] {
+    return load_config(kConfig / "gathering_hard.yaml", overrides).search.transitions;
+  };
+  EXPECT_EQ(transitions(), 120000);
+  overrides.push_back("task.bodies.2.start={x: [2, 5], y: [0, 4]}");
+  EXPECT_EQ(transitions(), 160000);
+}
+
 TEST(Config, RandomisedStartsAreNoNearerThanTheOthers) {
   Config config = parsed("train: {start_jitter: 0.5}\n");
   for (const auto& [randomise, randomisation, evaluation, training] :
