@@ -35,25 +35,50 @@ void BeamSearch::make_roots(const ReplayBatch& replay, SearchStats& stats) {
 
 std::vector<Transition> BeamSearch::grow(const SolveBatch& solve, const ReplayBatch& replay,
                                          SearchStats& stats) {
-  std::vector<Predecessor> steps = reverse_layer(timed(solve, stats, Stage::kSolves), stats);
-  std::unordered_set<std::uint64_t> seen = seen_;  // a copy, as not all of these steps are kept
-  steps = best_of(std::move(steps), config_.plans_per_node, seen);
-  const std::vector<PlanOutcome> outcomes =
-      simulate_plans(steps, counted(replay, stats, Stage::kReplays), stats);
-  std::vector<Transition> stored = to_store(outcomes);
-  make_next_beam(std::move(steps), outcomes);
+  BeamSearch* const alone = this;
+  return grow_together({&alone, 1}, solve, replay, stats);
+}
+
+std::vector<Transition> BeamSearch::grow_together(std::span<BeamSearch* const> trees,
+                                                  const SolveBatch& solve,
+                                                  const ReplayBatch& replay, SearchStats& stats) {
+  std::vector<reverse::ReverseJob> jobs;
+  std::vector<std::size_t> begins{0};  // of the jobs of each tree
+  for (const BeamSearch* tree : trees) {
+    std::ranges::move(tree->reverse_jobs(), std::back_inserter(jobs));
+    begins.push_back(jobs.size());
+  }
+  const std::vector<reverse::ReverseResult> answers = timed(solve, stats, Stage::kSolves)(jobs);
+  std::vector<Layer> layers;
+  for (std::size_t k = 0; k < trees.size(); ++k) {
+    const std::size_t first = begins[k], count = begins[k + 1] - first;
+    layers.push_back(trees[k]->with_plans(trees[k]->nearest_steps(
+        std::span(jobs).subspan(first, count), std::span(answers).subspan(first, count), stats)));
+  }
+  if (!trees.empty()) simulate(layers, trees[0]->task_, counted(replay, stats, Stage::kReplays));
+  std::vector<Transition> stored;
+  for (std::size_t k = 0; k < trees.size(); ++k) {
+    count_gaps(layers[k], stats);
+    std::ranges::move(trees[k]->to_store(layers[k].outcomes), std::back_inserter(stored));
+    trees[k]->make_next_beam(std::move(layers[k]));
+  }
   return stored;
 }
 
-/// Solves for the predecessors of every node of the beam under every action. Returns of each solve
-/// the config.predecessors_per_solve whose starts are nearest to the target.
-std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
-                                                   SearchStats& stats) const {
+/// Returns the reverse jobs of every node of the beam under every action.
+std::vector<reverse::ReverseJob> BeamSearch::reverse_jobs() const {
   std::vector<reverse::ReverseJob> jobs;
   for (const int k : beam_)
     for (int action = 0; action < action_count(task_.push); ++action)
       jobs.push_back({node(k).poses, action});
-  const std::vector<reverse::ReverseResult> answers = solve(jobs);
+  return jobs;
+}
+
+/// Returns of each solve the config.predecessors_per_solve whose starts are nearest to the target.
+/// `jobs`: reverse_jobs().
+std::vector<Predecessor> BeamSearch::nearest_steps(std::span<const reverse::ReverseJob> jobs,
+                                                   std::span<const reverse::ReverseResult> answers,
+                                                   SearchStats& stats) const {
   std::vector<Predecessor> found;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     const std::vector<Poses>& starts = answers[k].predecessors;
@@ -76,11 +101,9 @@ std::vector<Predecessor> BeamSearch::reverse_layer(const SolveBatch& solve,
 std::vector<Predecessor> BeamSearch::best_of(std::vector<Predecessor> steps, int times,
                                              std::unordered_set<std::uint64_t>& seen) const {
   std::vector<BeamEntry> entries;
-  for (const Predecessor& p : steps)
-    entries.push_back({p.start_distance, metric_.cell(p.start), metric_.layout_cell(p.start)});
+  for (const Predecessor& p : steps) entries.push_back({p.start_distance, metric_.cell(p.start)});
   std::vector<Predecessor> best;
-  const BeamLimits limits{times * config_.breadth, times * config_.nodes_per_layout};
-  for (const std::size_t k : select_beam(entries, limits, seen))
+  for (const std::size_t k : select_beam(entries, times * config_.breadth, seen))
     best.push_back(std::move(steps[k]));
   return best;
 }
@@ -103,27 +126,52 @@ Poses BeamSearch::with_drawn_start(const Poses& poses) {
   return legal_state(task_, at_start) ? at_start : poses;
 }
 
-/// Replaces the start of each step by with_drawn_start() and simulates the plans from there.
-/// Restores the starts if no plan succeeds, as where an object starts in its goal region. Adds the
-/// replay_gap() of steps whose start is the solver's to stats.gaps.
-std::vector<PlanOutcome> BeamSearch::simulate_plans(std::vector<Predecessor>& steps,
-                                                    const ReplayBatch& replay, SearchStats& stats) {
-  std::vector<Poses> own;
-  std::vector<Plan> plans;
-  for (Predecessor& p : steps) {
-    own.push_back(std::exchange(p.start, with_drawn_start(p.start)));
-    plans.push_back({p.start, plan(p)});
+/// Returns the plans that begin with the best of `steps`, whose starts are replaced by
+/// with_drawn_start().
+BeamSearch::Layer BeamSearch::with_plans(std::vector<Predecessor> steps) {
+  std::unordered_set<std::uint64_t> seen = seen_;  // a copy, as not all of these steps are kept
+  Layer layer{.steps = best_of(std::move(steps), config_.plans_per_node, seen)};
+  for (Predecessor& p : layer.steps) {
+    layer.found.push_back(std::exchange(p.start, with_drawn_start(p.start)));
+    layer.plans.push_back({p.start, plan(p)});
   }
-  std::vector<PlanOutcome> outcomes = carry_out(task_, plans, replay);
-  if (std::ranges::none_of(outcomes, &PlanOutcome::success)) {
-    for (std::size_t k = 0; k < steps.size(); ++k) steps[k].start = plans[k].start = own[k];
-    outcomes = carry_out(task_, plans, replay);
+  return layer;
+}
+
+/// Simulates the plans of all layers. Where no plan of a layer succeeds, as where an object starts
+/// in its goal region, simulates them again from the starts that the solver found.
+void BeamSearch::simulate(std::vector<Layer>& layers, const tasks::Task& task,
+                          const ReplayBatch& replay) {
+  const auto run = [&](const std::vector<Layer*>& some) {
+    std::vector<Plan> plans;
+    for (const Layer* layer : some) std::ranges::copy(layer->plans, std::back_inserter(plans));
+    std::vector<PlanOutcome> outcomes = carry_out(task, plans, replay);
+    auto next = std::make_move_iterator(outcomes.begin());
+    for (Layer* layer : some) {
+      const auto end = next + static_cast<std::ptrdiff_t>(layer->plans.size());
+      layer->outcomes.assign(next, end);
+      next = end;
+    }
+  };
+  std::vector<Layer*> all, failed;
+  for (Layer& layer : layers) all.push_back(&layer);
+  run(all);
+  for (Layer& layer : layers) {
+    if (std::ranges::any_of(layer.outcomes, &PlanOutcome::success)) continue;
+    for (std::size_t k = 0; k < layer.steps.size(); ++k)
+      layer.steps[k].start = layer.plans[k].start = layer.found[k];
+    failed.push_back(&layer);
   }
+  run(failed);
+}
+
+/// Adds the replay_gap() of steps whose start is the solver's to stats.gaps.
+void BeamSearch::count_gaps(const Layer& layer, SearchStats& stats) {
+  const auto& [steps, found, plans, outcomes] = layer;
   for (std::size_t k = 0; k < steps.size(); ++k)
-    if (steps[k].start == own[k] && !outcomes[k].steps.empty())
+    if (steps[k].start == found[k] && !outcomes[k].steps.empty())
       stats.gaps.push_back(
           static_cast<float>(replay_gap(steps[k].wanted_end, outcomes[k].steps[0].next)));
-  return outcomes;
 }
 
 /// Returns the first transition of each plan that succeeds; of some plans all of them.
@@ -138,13 +186,12 @@ std::vector<Transition> BeamSearch::to_store(std::span<const PlanOutcome> outcom
 }
 
 /// Makes the best of the steps whose plan succeeds the next beam.
-void BeamSearch::make_next_beam(std::vector<Predecessor> steps,
-                                std::span<const PlanOutcome> outcomes) {
+void BeamSearch::make_next_beam(Layer layer) {
   std::vector<Predecessor> good;
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    if (!outcomes[k].success) continue;
-    Predecessor& p = steps[k];
-    p.depth = static_cast<int>(outcomes[k].steps.size());
+  for (std::size_t k = 0; k < layer.steps.size(); ++k) {
+    if (!layer.outcomes[k].success) continue;
+    Predecessor& p = layer.steps[k];
+    p.depth = static_cast<int>(layer.outcomes[k].steps.size());
     good.push_back(std::move(p));
   }
   beam_.clear();

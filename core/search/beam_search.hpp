@@ -36,7 +36,13 @@ class BeamSearch {
   /// cell of another root.
   void make_roots(const ReplayBatch& replay, SearchStats& stats);
 
-  /// Grows a layer of the tree and returns the transitions to store:
+  /// Grows a layer of the tree and returns the transitions to store; see grow_together().
+  std::vector<Transition> grow(const SolveBatch& solve, const ReplayBatch& replay,
+                               SearchStats& stats);
+
+  /// Grows a layer of each of `trees`, which are of one task, and returns the transitions to store,
+  /// tree by tree. Each tree grows as it would alone. A batch has the jobs of all trees: those of a
+  /// narrow one would leave most workers idle.
   ///
   ///  1. Solve for the predecessors of every node of the beam under every action. Keep the best of
   ///     each solve, those whose starts are nearest to the target.
@@ -55,8 +61,9 @@ class BeamSearch {
   /// must succeed, as replay errors add up along it, and some plans are stored whole. On Sorting
   /// success is then 0.99 after 90,000 interactions, without both 0 after 130,000 (one seed).
   /// Without whole plans ArtManip's trees take 2.5 times the CPU time (docs/results/ablations).
-  std::vector<Transition> grow(const SolveBatch& solve, const ReplayBatch& replay,
-                               SearchStats& stats);
+  static std::vector<Transition> grow_together(std::span<BeamSearch* const> trees,
+                                               const SolveBatch& solve, const ReplayBatch& replay,
+                                               SearchStats& stats);
 
   /// Returns the smallest start_distance() of the beam's nodes; infinity if the beam is empty.
   double min_start_distance() const;
@@ -69,13 +76,26 @@ class BeamSearch {
   std::span<const int> beam() const { return beam_; }  // indices into nodes()
 
  private:
-  std::vector<Predecessor> reverse_layer(const SolveBatch& solve, SearchStats& stats) const;
+  /// The plans of a layer. Plan k begins with step k.
+  struct Layer {
+    std::vector<Predecessor> steps = {};
+    std::vector<Poses> found = {};  // starts of the steps, as the solver found them
+    std::vector<Plan> plans = {};   // from drawn starts, where the task allows
+    std::vector<PlanOutcome> outcomes = {};
+  };
+
+  std::vector<reverse::ReverseJob> reverse_jobs() const;
+  std::vector<Predecessor> nearest_steps(std::span<const reverse::ReverseJob> jobs,
+                                         std::span<const reverse::ReverseResult> answers,
+                                         SearchStats& stats) const;
   std::vector<Predecessor> best_of(std::vector<Predecessor> steps, int times,
                                    std::unordered_set<std::uint64_t>& seen) const;
-  std::vector<PlanOutcome> simulate_plans(std::vector<Predecessor>& steps,
-                                          const ReplayBatch& replay, SearchStats& stats);
+  Layer with_plans(std::vector<Predecessor> steps);
+  static void simulate(std::vector<Layer>& layers, const tasks::Task& task,
+                       const ReplayBatch& replay);
+  static void count_gaps(const Layer& layer, SearchStats& stats);
   std::vector<Transition> to_store(std::span<const PlanOutcome> outcomes);
-  void make_next_beam(std::vector<Predecessor> steps, std::span<const PlanOutcome> outcomes);
+  void make_next_beam(Layer layer);
   std::vector<int> plan(const Predecessor& step) const;
   Poses with_drawn_start(const Poses& poses);
   const Node& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }

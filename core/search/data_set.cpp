@@ -9,12 +9,13 @@
 namespace rtg::search {
 
 void DataSet::begin_shard(int count) {
-  limit_ = coverage_.transitions() + count;
+  left_ = count;
+  stored_ = 0;
   known_.clear();
 }
 
 void DataSet::store(std::span<const Transition> steps, const ReplayBatch& replay) {
-  const auto room = static_cast<std::size_t>(limit_ - coverage_.transitions());
+  const auto room = static_cast<std::size_t>(left_);
   const auto per_step = static_cast<std::size_t>(1 + config_.branches);
   const auto is_new = [this](const Transition& t) {
     return known_.insert(reverse::key_of(t.poses, t.action)).second;
@@ -28,6 +29,8 @@ void DataSet::store(std::span<const Transition> steps, const ReplayBatch& replay
   const std::span kept = std::span(rows).first(std::min(room, rows.size()));
   if (kept.empty()) return;
   for (const Transition& t : kept) coverage_.add(t);
+  left_ -= static_cast<long>(kept.size());
+  stored_ += static_cast<long>(kept.size());
   sink_(kept);
 }
 

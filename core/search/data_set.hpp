@@ -23,7 +23,7 @@ class DataSet {
         config_(config),
         seed_(seed),
         sink_(sink),
-        limit_(config.transitions),
+        left_(config.transitions),
         coverage_(task) {}
 
   /// Forgets which transitions are stored. From now on it is full after `count` further ones.
@@ -33,7 +33,9 @@ class DataSet {
   /// whose state and action are stored already. `replay` simulates the branches.
   void store(std::span<const Transition> steps, const ReplayBatch& replay);
 
-  bool full() const { return coverage_.transitions() >= limit_; }
+  bool full() const { return left_ == 0; }
+  long left() const { return left_; }      // transitions until it is full
+  long stored() const { return stored_; }  // transitions since begin_shard()
   const Coverage& coverage() const { return coverage_; }
 
  private:
@@ -41,7 +43,7 @@ class DataSet {
   const SearchConfig& config_;
   std::uint64_t seed_;
   const TransitionSink& sink_;
-  long limit_;  // number of transitions at which it is full
+  long left_, stored_ = 0;
   Coverage coverage_;
   std::unordered_set<std::uint64_t> known_;  // key_of() of each stored state and action
 };

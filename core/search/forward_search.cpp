@@ -29,14 +29,13 @@ std::vector<Transition> ForwardSearch::grow(const ReplayBatch& replay) {
     outcomes_.emplace(reverse::key_of(pushes[k].start, pushes[k].action), results[k]);
     if (!results[k].ok) continue;
     const Poses& end = results[k].end;
-    entries.push_back({goal_distance(task_, end), metric_.cell(end), metric_.layout_cell(end)});
+    entries.push_back({goal_distance(task_, end), metric_.cell(end)});
     const std::size_t parent = beam_[k / static_cast<std::size_t>(action_count(task_.push))];
     found.push_back({transition(task_, pushes[k], end, Source::kForward), parent});
   }
   beam_.clear();
   std::vector<Transition> steps;
-  const BeamLimits limits{config_.forward_breadth, config_.nodes_per_layout};
-  for (const std::size_t k : select_beam(entries, limits, seen_)) {
+  for (const std::size_t k : select_beam(entries, config_.forward_breadth, seen_)) {
     if (found[k].step.success && solved_ == 0) solved_ = nodes_.size();
     steps.push_back(found[k].step);
     beam_.push_back(nodes_.size());

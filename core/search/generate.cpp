@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <numeric>
 #include <span>
 #include <string>
@@ -32,31 +33,73 @@ std::vector<double> least_distances(std::span<const Node> nodes, const Poses& st
   }));
 }
 
-/// Runs Algorithm 1 once: draws a start and grows a tree from goal states towards it. Ends after
-/// run.layers() layers. Ends earlier if config.patience layers in a row come no nearer to the
-/// start.
-void grow_tree(Generation& run, int number) {
+/// Nodes that trees grown together have in a layer, if one tree has less.
+constexpr int kNodesTogether = 40;
+
+/// Returns how many trees to grow together, after `number` trees of the shard: as many as there are
+/// transitions left for. The first tree grows alone, as it tells how many transitions one takes.
+int trees_together(const Generation& run, int number) {
+  const int most = std::max(1, kNodesTogether / run.config.breadth);
+  if (number == 0 || run.data.stored() == 0) return 1;
+  const long left = run.data.left() * number / run.data.stored();  // of such trees
+  return static_cast<int>(std::clamp(left, 1L, static_cast<long>(most)));
+}
+
+/// A tree that grows from goal states towards a start (Algorithm 1).
+struct Tree {
+  BeamSearch search;
+  Poses target;
+  double best = 0.0;  // start_distance() that it has come to
+  int patience = 0;   // layers in a row that may come no nearer
+};
+
+/// Returns tree `number` with its roots alone.
+std::unique_ptr<Tree> planted(Generation& run, int number) {
   Rng rng = run.attempt_rng(number);
-  const std::string phase = "tree " + std::to_string(run.attempts + number + 1);
-  const Poses target = run.draw_start(rng);
-  BeamSearch search(run.task, run.config, target, rng.word(), run.seams.paces);
-  search.make_roots(run.replay(Stage::kGoals), run.stats);
-  if (search.nodes().empty()) return;
-  run.starts.push_back({target});
-  double best = search.min_start_distance();
-  int patience = run.config.patience;
-  for (int layer = 1; layer <= run.layers() && patience > 0; ++layer) {
-    if (search.beam().empty() || run.data.full() || run.cancelled()) break;
-    run.data.store(search.grow(run.seams.solve, run.seams.replay, run.stats),
+  Poses target = run.draw_start(rng);
+  auto tree = std::make_unique<Tree>(
+      Tree{BeamSearch(run.task, run.config, target, rng.word(), run.seams.paces), target});
+  tree->search.make_roots(run.replay(Stage::kGoals), run.stats);
+  tree->best = tree->search.min_start_distance();
+  tree->patience = run.config.patience;
+  return tree;
+}
+
+/// Grows trees together, of which the first has the number `number`, and returns how many. A tree
+/// ends after run.layers() layers, or if config.patience layers in a row come no nearer to its
+/// start.
+int grow_trees(Generation& run, int number) {
+  const int count = trees_together(run, number);
+  const std::string first = std::to_string(run.attempts + number + 1);
+  const std::string phase =
+      count == 1 ? "tree " + first
+                 : "trees " + first + " to " + std::to_string(run.attempts + number + count);
+  std::vector<std::unique_ptr<Tree>> trees;
+  for (int k = 0; k < count; ++k) trees.push_back(planted(run, number + k));
+  std::erase_if(trees, [](const auto& tree) { return tree->search.nodes().empty(); });
+  const std::size_t starts = run.starts.size();
+  for (const auto& tree : trees) run.starts.push_back({tree->target});
+  for (int layer = 1; layer <= run.layers(); ++layer) {
+    std::vector<BeamSearch*> growing;
+    for (const auto& tree : trees)
+      if (tree->patience > 0 && !tree->search.beam().empty()) growing.push_back(&tree->search);
+    if (growing.empty() || run.data.full() || run.cancelled()) break;
+    run.data.store(BeamSearch::grow_together(growing, run.seams.solve, run.seams.replay, run.stats),
                    run.replay(Stage::kBranches));
-    run.starts.back().depth = search.start_depth();
+    for (std::size_t k = 0; k < trees.size(); ++k) {
+      Tree& tree = *trees[k];
+      run.starts[starts + k].depth = tree.search.start_depth();
+      const double nearest = tree.search.min_start_distance();
+      tree.patience = nearest < tree.best ? run.config.patience : tree.patience - 1;
+      tree.best = std::min(tree.best, nearest);
+    }
     run.show(phase, layer, run.layers());
-    const double nearest = search.min_start_distance();
-    patience = nearest < best ? run.config.patience : patience - 1;
-    best = std::min(best, nearest);
   }
-  run.starts.back().away = least_distances(search.nodes(), target);
-  for (const Node& n : search.nodes()) run.nodes.push_back({n.poses, n.depth});
+  for (std::size_t k = 0; k < trees.size(); ++k) {
+    run.starts[starts + k].away = least_distances(trees[k]->search.nodes(), trees[k]->target);
+    for (const Node& n : trees[k]->search.nodes()) run.nodes.push_back({n.poses, n.depth});
+  }
+  return count;
 }
 
 }  // namespace
@@ -70,13 +113,16 @@ GenerationReport generate(const tasks::Task& task, const SearchConfig& config, s
     switch (config.generator) {
       case Generator::kRrbs:
       case Generator::kNaive:
-        return grow_tree(run, number);
+        break;
       case Generator::kForward:
-        return search_forward(run, number);
+        search_forward(run, number);
+        return 1;
       case Generator::kScatter:
       case Generator::kRandom:
-        return walk(run, number);
+        walk(run, number);
+        return 1;
     }
+    return grow_trees(run, number);
   });
   GenerationReport report{run.data.coverage().figures(), std::move(run.stats)};
   if (report.stats.undrawn_goals > 0)

@@ -52,18 +52,20 @@ struct Generation {
 
   bool cancelled() const { return seams.cancelled && seams.cancelled(); }
 
-  /// Calls attempt(0), attempt(1), ... of each shard: each runs one tree, forward search or wave of
-  /// walks. A shard ends when it has its transitions, the run is cancelled, or eight attempts in a
-  /// row store nothing.
+  /// Calls attempt(0), attempt(n), ... of each shard, where n is the number of attempts made so
+  /// far: trees, forward searches, or waves of walks. Each call returns how many it has made. A
+  /// shard ends when it has its transitions, the run is cancelled, or eight attempts in a row store
+  /// nothing.
   template <class Attempt>
   void repeat(Attempt attempt) {
     for (int k = 0; k < config.shards; ++k) {
       begin_shard(k);
       int number = 0;
-      for (int barren = 0; barren < 8 && !data.full() && !cancelled(); ++number) {
-        const long before = data.coverage().transitions();
-        attempt(number);
-        barren = data.coverage().transitions() > before ? 0 : barren + 1;
+      for (int barren = 0; barren < 8 && !data.full() && !cancelled();) {
+        const long before = data.stored();
+        const int made = attempt(number);
+        number += made;
+        barren = data.stored() > before ? 0 : barren + made;
       }
       attempts += number;
     }

@@ -49,7 +49,7 @@ using TransitionSink = std::function<void(std::span<const Transition>)>;
 
 /// A line of the progress display.
 struct Progress {
-  std::string phase;  // "tree 1", "plan 3", "random walks"
+  std::string phase;  // "tree 1", "trees 2 to 5", "plan 3", "random walks"
   int layer = 0;      // of `depth`
   int depth = 0;
   long transitions = 0;  // stored so far

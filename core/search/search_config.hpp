@@ -34,7 +34,6 @@ struct SearchConfig {
   double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
   int depth = 100;                 // D, layers per tree at most; no more than task.horizon
   int predecessors_per_solve = 2;  // considered per node and action, the best ones
-  int nodes_per_layout = 18;       // most nodes of a beam that differ only in the robot's position
   int root_draws = 4;              // goal states drawn per tree, as a multiple of breadth
   int patience = 4;                // consecutive layers without a better node that end a tree
   bool randomise = false;          // starts are jittered by up to task.randomisation
@@ -62,8 +61,6 @@ struct SearchConfig {
               "largest number of layers of a search tree, at most task.horizon");
     v.integer("predecessors_per_solve", predecessors_per_solve, 1, 100,
               "predecessors considered per node and heading");
-    v.integer("nodes_per_layout", nodes_per_layout, 1, 100000,
-              "largest number of beam nodes that differ in the robot alone");
     v.integer("root_draws", root_draws, 1, 1000,
               "goal states drawn for the roots of a tree, as a multiple of breadth");
     v.integer("patience", patience, 1, 1000,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "core/world/separation.hpp"
@@ -119,7 +118,7 @@ bool in_start_region(const tasks::Task& task, const StateMetric& metric, const P
   if (task.start_ranges.empty()) return in_place(metric, poses, task.start);
   const Poses layout = layout_around(task, poses);
   return std::ranges::all_of(metric.objects(), [&](const auto& o) {
-    const std::optional<tasks::StartRange>& range = task.start_ranges[o.body];
+    const tasks::StartRange* range = task.start_range(o.body);
     if (!range) return in_place(metric, o, poses, layout);
     if (excess(range->region, poses[o.body].position()) > kInPlace) return false;
     const double off = poses[o.body].theta - (range->least + range->most) / 2.0;

@@ -96,14 +96,13 @@ std::optional<Poses> jittered(const Task& task, const Poses& start, double ampli
 Poses layout_around(const Task& task, const Poses& poses) {
   if (task.start_ranges.empty()) return task.start;
   return with_moved_trees(task, task.layout, [&](std::size_t i, const Pose& from) {
-    return task.start_ranges[i] ? poses[i] : from;
+    return task.start_range(i) ? poses[i] : from;
   });
 }
 
 bool robot_is_turned(const Task& task) {
-  if (task.start_ranges.empty() || !task.start_ranges[0]) return false;
-  const StartRange& range = *task.start_ranges[0];
-  return range.most > range.least && task.scene.bodies[0].shape.symmetry() > 0.0;
+  const StartRange* range = task.start_range(0);
+  return range && range->most > range->least && task.scene.bodies[0].shape.symmetry() > 0.0;
 }
 
 bool succeeded(const Task& task, const Poses& poses) {

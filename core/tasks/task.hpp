@@ -39,6 +39,11 @@ struct Task {
   double start_jitter = 0.1;   // largest shift of objects in evaluation starts, x and y [m]
   double randomisation = 0.0;  // the same for domain randomisation [m]
 
+  /// Returns the range that the start of body `i` is drawn from; nullptr if it has a fixed place.
+  const StartRange* start_range(std::size_t i) const {
+    return start_ranges.empty() || !start_ranges[i] ? nullptr : &*start_ranges[i];
+  }
+
   /// Shows the numeric settings to `v`, with their bounds and help texts.
   template <class Visitor>
   void visit(Visitor& v) {

@@ -215,8 +215,7 @@ int default_transitions(const tasks::Task& task) {
   constexpr int kPerObject = 20000, kPerRange = 60000;
   int sum = 0;
   for (std::size_t i = 1; i < task.scene.size(); ++i) {
-    const bool ranges = !task.start_ranges.empty() && task.start_ranges[i].has_value();
-    if (!task.scene.bodies[i].fixed) sum += ranges ? kPerRange : kPerObject;
+    if (!task.scene.bodies[i].fixed) sum += task.start_range(i) ? kPerRange : kPerObject;
   }
   return std::max(search::SearchConfig{}.transitions, sum);
 }

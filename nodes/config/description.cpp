@@ -95,8 +95,7 @@ std::string range_in_words(const tasks::StartRange& range, double metre) {
 
 std::string start_in_words(const tasks::Task& task, std::size_t i) {
   const double metre = task.units.length;
-  if (!task.start_ranges.empty() && task.start_ranges[i])
-    return range_in_words(*task.start_ranges[i], metre);
+  if (const tasks::StartRange* range = task.start_range(i)) return range_in_words(*range, metre);
   const Pose& start = task.start[i];
   return print("at (%.3g, %.3g), %.4g deg", metre * start.x, metre * start.y, degrees(start.theta));
 }
@@ -214,9 +213,7 @@ std::string term_in_words(const tasks::GoalTerm& term, double metre) {
 bool some_start_in_places(const tasks::Task& task) {
   const std::vector<std::size_t> roots = roots_of(task.scene);
   for (std::size_t i = 1; i < task.scene.size(); ++i)
-    if (!task.scene.bodies[roots[i]].fixed &&
-        (task.start_ranges.empty() || !task.start_ranges[roots[i]]))
-      return true;
+    if (!task.scene.bodies[roots[i]].fixed && !task.start_range(roots[i])) return true;
   return false;
 }
 

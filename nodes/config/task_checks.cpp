@@ -174,7 +174,7 @@ void check_stays(const tasks::GoalTerm& term, const tasks::Task& task, const Con
                  const std::string& path) {
   if (!std::holds_alternative<tasks::Stays>(term.condition)) return;
   for (std::size_t i = 1; i < task.start_ranges.size(); ++i)
-    if (task.start_ranges[i] && concerns(term, task.scene, i))
+    if (task.start_range(i) && concerns(term, task.scene, i))
       throw ConfigError(find(node, "stays")->value.origin, path + ".stays",
                         '\'' + task.scene.bodies[i].name + "' starts anywhere in a range",
                         "bodies whose start is [x, y, theta]");

@@ -82,6 +82,24 @@ TEST_F(BeamSearchTest, SolvesForEveryActionOfEveryNodeOfTheBeam) {
   EXPECT_EQ(stats.candidates, (2 + 6) * 48);
 }
 
+TEST_F(BeamSearchTest, TreesThatGrowTogetherGrowAsAlone) {
+  config.whole_plan_share = 0.5;
+  BeamSearch a = with_roots(1), b = with_roots(2), rootless(task, config, task.start, 3);
+  BeamSearch together_a = with_roots(1), together_b = with_roots(2);
+  SearchStats alone, together;
+  for (int layer = 0; layer < 12; ++layer) {
+    std::vector<Transition> expected = a.grow(solve, replay, alone);
+    std::ranges::copy(b.grow(solve, replay, alone), std::back_inserter(expected));
+    BeamSearch* const trees[] = {&together_a, &rootless, &together_b};
+    EXPECT_EQ(BeamSearch::grow_together(trees, solve, replay, together), expected);
+  }
+  EXPECT_GT(a.nodes().size(), 20U);
+  EXPECT_TRUE(std::ranges::equal(together_a.nodes(), a.nodes(), {}, &Node::poses, &Node::poses));
+  EXPECT_TRUE(std::ranges::equal(together_b.nodes(), b.nodes(), {}, &Node::poses, &Node::poses));
+  EXPECT_EQ(together.gaps, alone.gaps);
+  EXPECT_EQ(together.replays, alone.replays);
+}
+
 TEST_F(BeamSearchTest, ReturnsTrueStepsThatLeadToAboutANodeOfTheBeam) {
   over = 0.1;  // misses within the tolerance
   config.breadth = 24;
@@ -181,7 +199,6 @@ TEST_F(BeamSearchTest, OfEachSolveTheStartsNearestToTheTargetAreSimulated) {
   drags = {0.2, 0.6, 0.35, testing::kDrag};
   config.predecessors_per_solve = 2;
   config.plans_per_node = 100;  // more than there are steps
-  config.nodes_per_layout = 100;
   BeamSearch search = with_roots();
   std::size_t best = 0, left_out = 0;
   for (int layer = 0; layer < 3; ++layer) {

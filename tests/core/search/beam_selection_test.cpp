@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "core/math/rng.hpp"
@@ -14,29 +13,24 @@ namespace {
 using Cells = std::unordered_set<std::uint64_t>;
 using Indices = std::vector<std::size_t>;
 
-BeamLimits limits(int nodes) { return {nodes, 1000}; }
-
-/// `count` entries, each in a cell and a layout of its own, scores 0, 1, 2, ...
+/// `count` entries, each in a cell of its own, scores 0, 1, 2, ...
 std::vector<BeamEntry> ranked(int count) {
   std::vector<BeamEntry> entries;
-  for (int k = 0; k < count; ++k) {
-    const auto id = static_cast<std::uint64_t>(1000 + k);
-    entries.push_back({static_cast<double>(k), id, id});
-  }
+  for (int k = 0; k < count; ++k)
+    entries.push_back({static_cast<double>(k), static_cast<std::uint64_t>(1000 + k)});
   return entries;
 }
 
-Indices select(const std::vector<BeamEntry>& entries, const BeamLimits& c, Cells seen = {}) {
-  return select_beam(entries, c, seen);
+Indices select(const std::vector<BeamEntry>& entries, int count, Cells seen = {}) {
+  return select_beam(entries, count, seen);
 }
 
-/// Entries as a search meets them: few scores, cells and layouts; a cell spans two layouts.
+/// Entries as a search meets them: some share a cell.
 std::vector<BeamEntry> random_entries(Rng& rng, int count) {
   std::vector<BeamEntry> entries;
   for (int k = 0; k < count; ++k) {
-    const auto layout = static_cast<std::uint64_t>(rng.below(40));
-    const std::uint64_t cell = 8 * (layout / 2) + static_cast<std::uint64_t>(rng.below(16));
-    entries.push_back({rng.uniform(0.0, 1.0), cell, layout});
+    const auto cell = static_cast<std::uint64_t>(rng.below(160));
+    entries.push_back({rng.uniform(0.0, 1.0), cell});
   }
   return entries;
 }
@@ -44,12 +38,12 @@ std::vector<BeamEntry> random_entries(Rng& rng, int count) {
 TEST(BeamSelection, TakesTheBest) {
   std::vector<BeamEntry> entries = ranked(9);
   std::ranges::reverse(entries);
-  EXPECT_EQ(select(entries, limits(4)), (Indices{8, 7, 6, 5}));
+  EXPECT_EQ(select(entries, 4), (Indices{8, 7, 6, 5}));
 }
 
 TEST(BeamSelection, TakesAllIfThereAreFewer) {
-  EXPECT_EQ(select(ranked(3), limits(10)), (Indices{0, 1, 2}));
-  EXPECT_EQ(select({}, limits(10)), Indices{});
+  EXPECT_EQ(select(ranked(3), 10), (Indices{0, 1, 2}));
+  EXPECT_EQ(select({}, 10), Indices{});
 }
 
 TEST(BeamSelection, KeepsTheBestOfEachCell) {
@@ -57,50 +51,23 @@ TEST(BeamSelection, KeepsTheBestOfEachCell) {
   entries[1].cell = entries[0].cell;
   entries[4].cell = entries[0].cell;
   entries[5].cell = entries[3].cell;
-  EXPECT_EQ(select(entries, limits(10)), (Indices{0, 2, 3}));
+  EXPECT_EQ(select(entries, 10), (Indices{0, 2, 3}));
 }
 
 TEST(BeamSelection, OfEqualScoresInACellTheFirstStays) {
   std::vector<BeamEntry> entries = ranked(3);
-  for (BeamEntry& e : entries) e = {1.0, 7, 7};
-  EXPECT_EQ(select(entries, limits(10)), Indices{0});
+  for (BeamEntry& e : entries) e = {1.0, 7};
+  EXPECT_EQ(select(entries, 10), Indices{0});
 }
 
 TEST(BeamSelection, NeverEntersACellTwiceAndNotesOnlyWhatItChose) {
   const std::vector<BeamEntry> entries = ranked(9);
-  const BeamLimits c = limits(3);
   Cells seen{entries[1].cell};
-  EXPECT_EQ(select_beam(entries, c, seen), (Indices{0, 2, 3}));
+  EXPECT_EQ(select_beam(entries, 3, seen), (Indices{0, 2, 3}));
   EXPECT_EQ(seen, (Cells{entries[0].cell, entries[1].cell, entries[2].cell, entries[3].cell}));
-  EXPECT_EQ(select_beam(entries, c, seen), (Indices{4, 5, 6}));
-  EXPECT_EQ(select_beam(entries, c, seen), (Indices{7, 8}));
-  EXPECT_EQ(select_beam(entries, c, seen), Indices{});
-}
-
-TEST(BeamSelection, KeepsTheBestOfEachLayout) {
-  std::vector<BeamEntry> entries = ranked(10);
-  for (std::size_t k = 0; k < 7; ++k) entries[k].layout = 5;
-  BeamLimits c = limits(10);
-  c.nodes_per_layout = 2;
-  EXPECT_EQ(select(entries, c), (Indices{0, 1, 7, 8, 9}));
-}
-
-TEST(BeamSelection, WhatItsLayoutHasNoRoomForLeavesItsCellToOthers) {
-  std::vector<BeamEntry> entries = ranked(4);
-  entries[1].layout = entries[0].layout;
-  entries[2].cell = entries[1].cell;
-  BeamLimits c = limits(10);
-  c.nodes_per_layout = 1;
-  EXPECT_EQ(select(entries, c), (Indices{0, 2, 3}));
-}
-
-TEST(BeamSelection, WhatItsCellHasNoRoomForLeavesItsLayoutToOthers) {
-  std::vector<BeamEntry> entries = ranked(3);
-  for (BeamEntry& e : entries) e.layout = 5;
-  entries[1].cell = entries[0].cell;
-  BeamLimits c = limits(10);
-  c.nodes_per_layout = 2;
-  EXPECT_EQ(select(entries, c), (Indices{0, 2}));
+  EXPECT_EQ(select_beam(entries, 3, seen), (Indices{4, 5, 6}));
+  EXPECT_EQ(select_beam(entries, 3, seen), (Indices{7, 8}));
+  EXPECT_EQ(select_beam(entries, 3, seen), Indices{});
 }
 
 TEST(BeamSelection, HoldsAllItsPromisesOnRandomLayers) {
@@ -108,16 +75,12 @@ TEST(BeamSelection, HoldsAllItsPromisesOnRandomLayers) {
   for (int trial = 0; trial < 200; ++trial) {
     const std::vector<BeamEntry> entries = random_entries(rng, 300);
     Cells seen{3, 17, 80}, before = seen;
-    BeamLimits c = limits(20);
-    c.nodes_per_layout = 3;
-    const Indices beam = select_beam(entries, c, seen);
+    const Indices beam = select_beam(entries, 20, seen);
     ASSERT_EQ(beam.size(), 20U);
     std::set<std::uint64_t> cells;
-    std::map<std::uint64_t, int> layouts;
     for (const std::size_t k : beam) {
       ASSERT_TRUE(cells.insert(entries[k].cell).second);
       ASSERT_FALSE(before.contains(entries[k].cell));
-      ASSERT_LE(++layouts[entries[k].layout], 3);
     }
     ASSERT_TRUE(std::ranges::is_sorted(beam, {}, [&](std::size_t k) { return entries[k].score; }));
     before.insert(cells.begin(), cells.end());
@@ -131,8 +94,7 @@ TEST(BeamSelection, DoesNotDependOnTheOrderInWhichResultsArrived) {
     std::vector<BeamEntry> entries = random_entries(rng, 200);
     const auto cells = [&entries] {
       std::vector<std::uint64_t> out;
-      for (const std::size_t k : select(entries, limits(20), {5, 6}))
-        out.push_back(entries[k].cell);
+      for (const std::size_t k : select(entries, 20, {5, 6})) out.push_back(entries[k].cell);
       return out;
     };
     const std::vector<std::uint64_t> first = cells();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <string>
 
 #include "core/forward/box2d_simulator.hpp"
 #include "core/search/generation.hpp"
@@ -78,6 +79,29 @@ TEST(Generate, ShardsFindWhatEachOfThemFindsAlone) {
   EXPECT_TRUE(run.report.shortfalls.empty());
 }
 
+// A narrow tree would leave most of many workers idle.
+TEST(Generate, GrowsTreesTogetherAfterTheFirst) {
+  SearchConfig config = small();
+  config.transitions = 12000;
+  std::set<std::size_t> batches;  // their sizes
+  GenerationSeams seams = testing::naive_seams(gathering(), 1);
+  seams.solve = [&batches, solve = seams.solve](std::span<const reverse::ReverseJob> jobs) {
+    batches.insert(jobs.size());
+    return solve(jobs);
+  };
+  const GenerationRun run = testing::run(gathering(), config, 7, seams);
+  const auto first_with = [&run](const std::string& phase) {
+    return std::ranges::count_if(run.progress, [&](const Progress& p) {
+      return p.layer == 1 && p.phase.starts_with(phase);
+    });
+  };
+  EXPECT_EQ(first_with("tree 1"), 1);
+  EXPECT_EQ(first_with("trees 2 to 5"), 1);
+  EXPECT_GT(*batches.rbegin(), 2U * 10U * 48U);
+  // As many trees as there are transitions left for: hardly one ends half grown.
+  EXPECT_GE(starts_reached(run.report.starts) + 2, static_cast<long>(run.report.starts.size()));
+}
+
 TEST(Generate, AnotherSeedGivesOtherTransitions) {
   EXPECT_NE(run_naive(gathering(), small(), 8, 2).stored, reference_run().stored);
 }
@@ -94,9 +118,10 @@ int attempts(int period, int budget) {
   int made = 0;
   run.repeat([&](int number) {
     EXPECT_EQ(number, made++);
-    if (made % period != 0) return;
+    if (made % period != 0) return 1;
     const Transition step{testing::robot_at(made), 0, testing::robot_at(made + 1)};
     run.data.store({&step, 1}, none);
+    return 1;
   });
   return made;
 }

@@ -26,23 +26,15 @@ TEST(SearchConfig, EachFieldChangesTheStoredTransitions) {
   SearchConfig config;
   config.transitions = 6000;
   config.breadth = 6;
-  config.nodes_per_layout = 4;
   config.patience = 1;
   config.depth = 60;
   const testing::OtherValues others{
-      {"generator", 4},
-      {"transitions", 1100},
-      {"branches", 3},
-      {"breadth", 7},
-      {"plans_per_node", 3},
-      {"whole_plan_share", 0.5},
-      {"depth", 3},
-      {"predecessors_per_solve", 1},
-      {"nodes_per_layout", 2},
-      {"root_draws", 1},
-      {"patience", 8},
-      {"randomise", 1},
-      {"shards", 3},
+      {"generator", 4},      {"transitions", 1100},
+      {"branches", 3},       {"breadth", 7},
+      {"plans_per_node", 3}, {"whole_plan_share", 0.5},
+      {"depth", 3},          {"predecessors_per_solve", 1},
+      {"root_draws", 1},     {"patience", 8},
+      {"randomise", 1},      {"shards", 3},
       {"shard", 2},
   };
   testing::expect_each_field_matters(config, others, {"forward_breadth"}, stored);

@@ -21,7 +21,6 @@ TREE_ABLATIONS: dict[str, tuple[Any, ...]] = {
     "plans_per_node": (1,),
     "whole_plan_share": (0, 1),
     "predecessors_per_solve": (1,),
-    "nodes_per_layout": (100000,),  # no limit
     "root_draws": (1,),
     "patience": (1000,),  # no limit
 }

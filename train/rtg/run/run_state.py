@@ -12,7 +12,7 @@ class RunState:
     """The progress of a run."""
 
     generates: bool = True  # False if the run generates no transitions
-    phase: str = ""  # phase of the generation, such as "tree 1", "plan 3", "random walks"
+    phase: str = ""  # of the generation, such as "tree 1", "trees 2 to 5", "random walks"
     layer: int = 0  # current layer of the search, of `depth` layers
     depth: int = 0
     transitions: int = 0
