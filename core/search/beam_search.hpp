@@ -72,6 +72,7 @@ class BeamSearch {
   /// of the target; -1 if there is none.
   int start_depth() const;
 
+  const Poses& target() const { return target_; }
   std::span<const Node> nodes() const { return nodes_; }
   std::span<const int> beam() const { return beam_; }  // indices into nodes()
 

@@ -48,7 +48,6 @@ int trees_together(const Generation& run, int number) {
 /// A tree that grows from goal states towards a start (Algorithm 1).
 struct Tree {
   BeamSearch search;
-  Poses target;
   double best = 0.0;  // start_distance() that it has come to
   int patience = 0;   // layers in a row that may come no nearer
 };
@@ -58,7 +57,7 @@ std::unique_ptr<Tree> planted(Generation& run, int number) {
   Rng rng = run.attempt_rng(number);
   Poses target = run.draw_start(rng);
   auto tree = std::make_unique<Tree>(
-      Tree{BeamSearch(run.task, run.config, target, rng.word(), run.seams.paces), target});
+      Tree{BeamSearch(run.task, run.config, std::move(target), rng.word(), run.seams.paces)});
   tree->search.make_roots(run.replay(Stage::kGoals), run.stats);
   tree->best = tree->search.min_start_distance();
   tree->patience = run.config.patience;
@@ -78,7 +77,7 @@ int grow_trees(Generation& run, int number) {
   for (int k = 0; k < count; ++k) trees.push_back(planted(run, number + k));
   std::erase_if(trees, [](const auto& tree) { return tree->search.nodes().empty(); });
   const std::size_t starts = run.starts.size();
-  for (const auto& tree : trees) run.starts.push_back({tree->target});
+  for (const auto& tree : trees) run.starts.push_back({tree->search.target()});
   for (int layer = 1; layer <= run.layers(); ++layer) {
     std::vector<BeamSearch*> growing;
     for (const auto& tree : trees)
@@ -96,8 +95,9 @@ int grow_trees(Generation& run, int number) {
     run.show(phase, layer, run.layers());
   }
   for (std::size_t k = 0; k < trees.size(); ++k) {
-    run.starts[starts + k].away = least_distances(trees[k]->search.nodes(), trees[k]->target);
-    for (const Node& n : trees[k]->search.nodes()) run.nodes.push_back({n.poses, n.depth});
+    const BeamSearch& search = trees[k]->search;
+    run.starts[starts + k].away = least_distances(search.nodes(), search.target());
+    for (const Node& n : search.nodes()) run.nodes.push_back({n.poses, n.depth});
   }
   return count;
 }

@@ -52,6 +52,14 @@ nlohmann::ordered_json median_depth(std::span<const TreeStart> starts) {
   return or_null(!depths.empty(), quantile(depths, 0.5));
 }
 
+/// Returns which settings make a search of `generator` wider, in words; none do for walks.
+std::string wider(Generator generator) {
+  if (generator == Generator::kRandom || generator == Generator::kScatter) return "";
+  return std::string("; a wider one may find more (") +
+         (generator == Generator::kForward ? "search.forward_breadth)"
+                                           : "search.breadth, search.plans_per_node)");
+}
+
 }  // namespace
 
 void set_shortfalls(GenerationReport& report, const SearchConfig& config) {
@@ -66,9 +74,7 @@ void set_shortfalls(GenerationReport& report, const SearchConfig& config) {
   if (report.coverage.transitions < config.transitions)
     report.shortfalls.push_back(
         search + found + " transitions of the " + std::to_string(config.transitions) +
-        " asked for and then nothing more, see generation.json; a wider one may find more (" +
-        (config.generator == Generator::kForward ? "search.forward_breadth)"
-                                                 : "search.breadth, search.plans_per_node)"));
+        " asked for and then nothing more, see generation.json" + wider(config.generator));
 }
 
 std::string to_json(const GenerationReport& r) {

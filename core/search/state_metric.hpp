@@ -59,10 +59,9 @@ class StateMetric {
   /// measures 0.4 m in each object's x and y, and about 0.4 rad in each object's angle.
   std::uint64_t cell(const Poses& poses) const;
 
+ private:
   /// Returns the key of the grid cell of the objects alone, without the robot.
   std::uint64_t layout_cell(const Poses& poses) const;
-
- private:
   double turn_between(const Object& object, const Poses& a, const Poses& b) const;
 
   std::vector<Object> objects_;

@@ -51,9 +51,9 @@ std::optional<std::size_t> main_term(const Refusals& refusals) {
 
 std::string main_reason(const Refusals& refusals, const Scene& scene) {
   const auto main = refusals.main();
-  if (!main) return "no try was made";
+  if (!main) return "no try failed";
   const int percent = static_cast<int>(100.0 * main->share);
-  return words(main->refusal, scene) + " in " + std::to_string(percent) + "% of the tries";
+  return words(main->refusal, scene) + " in " + std::to_string(percent) + "% of the failed tries";
 }
 
 }  // namespace rtg::tasks

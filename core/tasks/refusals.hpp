@@ -28,13 +28,13 @@ class Refusals {
  public:
   void count(const Refusal& refusal) { ++counts_[refusal]; }
 
-  /// Counts a try that failed for what was refused most often in its `proposals`: several refusals
-  /// if they are level.
+  /// Counts a try that failed for what was refused most often in its `proposals`, of which there is
+  /// at least one: several refusals if they are level.
   void count_main(const Refusals& proposals);
 
   struct Main {
     Refusal refusal;
-    double share;  // of the tries
+    double share;  // of the tries that failed
   };
   /// Returns what made most tries fail, the first of several that are level; nothing if none
   /// failed.
@@ -51,7 +51,7 @@ class Refusals {
 std::optional<std::size_t> main_term(const Refusals& refusals);
 
 /// Returns what failed most often, in words to the user: "task.goal.1 did not hold in 93% of the
-/// tries".
+/// failed tries".
 std::string main_reason(const Refusals& refusals, const Scene& scene);
 
 }  // namespace rtg::tasks

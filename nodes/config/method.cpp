@@ -33,7 +33,8 @@ const std::array<Settings, kMethods.size()>& table() {
       // Uniform mixing: otherwise half of every batch would be walks, which hardly ever succeed.
       unguided({{"search", "generator", "random"}, {"train", "offline_share", "-1.0"}}),
       unguided({{"search", "generator", "scatter"}, {"train", "offline_share", "-1.0"}}),
-      Settings{{"search", "generator", "naive"}},
+      // Few kinematic steps come out in the simulator: narrow trees of them end early.
+      Settings{{"search", "generator", "naive"}, {"search", "breadth", "100"}},
       Settings{{"search", "generator", "forward"}},
       Settings{{"search", "generator", "rrbs"}},
       Settings{{"search", "generator", "rrbs"},

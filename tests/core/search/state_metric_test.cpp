@@ -100,10 +100,9 @@ TEST(StateMetric, LayoutDistanceMatchesANaiveSum) {
 
 /// The cell as a list of coordinates instead of a hash: 0.8 m for the robot, 0.4 m and about
 /// 0.4 rad for the objects.
-std::vector<long> naive_cell(const Poses& poses, bool with_robot) {
+std::vector<long> naive_cell(const Poses& poses) {
   const auto along = [](double x, double side) { return static_cast<long>(std::floor(x / side)); };
-  std::vector<long> cell;
-  if (with_robot) cell = {along(poses[0].x, 0.8), along(poses[0].y, 0.8)};
+  std::vector<long> cell{along(poses[0].x, 0.8), along(poses[0].y, 0.8)};
   for (std::size_t k = 0; k < kObjects.size(); ++k) {
     const Pose& p = poses[kObjects[k]];
     const double period = 2.0 * kPi / kOrders[k];
@@ -118,17 +117,15 @@ std::vector<long> naive_cell(const Poses& poses, bool with_robot) {
 
 TEST(StateMetricCell, NamesAreOneToOneWithNaiveCells) {
   const StateMetric metric(mixed_scene());
-  for (const bool with_robot : {true, false}) {
-    Rng rng(7);
-    std::map<std::vector<long>, std::uint64_t> names;
-    std::map<std::uint64_t, std::vector<long>> cells_of;
-    for (int trial = 0; trial < 5000; ++trial) {
-      const Poses poses = random_poses(rng);
-      const std::vector<long> naive = naive_cell(poses, with_robot);
-      const std::uint64_t name = with_robot ? metric.cell(poses) : metric.layout_cell(poses);
-      ASSERT_EQ(names.emplace(naive, name).first->second, name);
-      ASSERT_EQ(cells_of.emplace(name, naive).first->second, naive);
-    }
+  Rng rng(7);
+  std::map<std::vector<long>, std::uint64_t> names;
+  std::map<std::uint64_t, std::vector<long>> cells_of;
+  for (int trial = 0; trial < 5000; ++trial) {
+    const Poses poses = random_poses(rng);
+    const std::vector<long> naive = naive_cell(poses);
+    const std::uint64_t name = metric.cell(poses);
+    ASSERT_EQ(names.emplace(naive, name).first->second, name);
+    ASSERT_EQ(cells_of.emplace(name, naive).first->second, naive);
   }
 }
 
@@ -139,7 +136,6 @@ TEST(StateMetricCell, LinesOfTheRobotAreItsOwn) {
   c[0] = {0.9, 0.7, 3.0};
   EXPECT_EQ(metric.cell(a), metric.cell(b));
   EXPECT_NE(metric.cell(a), metric.cell(c));
-  EXPECT_EQ(metric.layout_cell(a), metric.layout_cell(c));
 }
 
 TEST(StateMetricCell, AnglesGoRoundWithThePeriodOfTheShape) {

@@ -161,13 +161,13 @@ TEST(Task, WhatKeepsStartsFromBeingLegalIsNamed) {
   Task task = gathering();
   task.start[2] = task.start[1];
   EXPECT_EQ(reason(task, 0.01),
-            "'box1' was nearer to 'box2' than the clearance in 100% of the tries");
+            "'box1' was nearer to 'box2' than the clearance in 100% of the failed tries");
   task = gathering();
   task.start[3].x = 2.0 * task.push.arena;
-  EXPECT_EQ(reason(task, 0.01), "'box3' was out of the arena in 100% of the tries");
+  EXPECT_EQ(reason(task, 0.01), "'box3' was out of the arena in 100% of the failed tries");
   task = gathering();
   task.goal = testing::near_origin(20.0);
-  EXPECT_EQ(reason(task, 0.01), "the goal held in 100% of the tries");
+  EXPECT_EQ(reason(task, 0.01), "the goal held in 100% of the failed tries");
 }
 
 // Box 1 alone moves, by up to 1 m; the goal holds unless it moves to the right end of that.

@@ -27,7 +27,7 @@ TEST(SameBits, OfBoxesGatheredInACircle) {
 
 TEST(SameBits, OfBoxesOfTwoKinds) {
   EXPECT_EQ(digest_of("sorting"),
-            "604bfcb6f36bd3d3074633090798c77a8b9beb897241ed741bcf03b44cd10b2c");
+            "c8f26cbb1fe8e5febc417e80f6b44d35262f861a1530d17accbd43cf4998f226");
 }
 
 TEST(SameBits, OfAChainOfJoints) {

@@ -89,7 +89,7 @@ WALLS = """\
 """
 TOO_FEW = (
     "m too few starts are legal (bodies 0.02 m apart, objects in the arena, goal not met); 'a' was "
-    "nearer to 'right' than the clearance in {share}% of the tries; legal: at most"
+    "nearer to 'right' than the clearance in {share}% of the failed tries; legal: at most"
 )
 
 

@@ -403,7 +403,7 @@ class NoGoal:
         return None if index == 1 else self._task.goal_state(seed, index)
 
     def why_no_goal_state(self, seed, index):
-        return "task.goal.0 did not hold in 93% of the tries"
+        return "task.goal.0 did not hold in 93% of the failed tries"
 
 
 def test_the_picture_of_a_task_says_which_term_left_a_goal_state_out(tmp_path, monkeypatch):
@@ -413,7 +413,7 @@ def test_the_picture_of_a_task_says_which_term_left_a_goal_state_out(tmp_path, m
     task_picture.draw(tmp_path / "task.png", config)
     ((*_, tiles, _, title),) = drawn
     assert [tile.caption for tile in tiles].count("a goal state") == 3
-    assert title.endswith("; no goal state 2: task.goal.0 did not hold in 93% of the tries")
+    assert title.endswith("; no goal state 2: task.goal.0 did not hold in 93% of the failed tries")
     assert TASK.why_no_goal_state(1, 0) == ""
 
 

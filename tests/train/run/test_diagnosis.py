@@ -99,7 +99,7 @@ def test_of_learning_the_ranks_come_first_then_the_budget() -> None:
 
 
 def test_draws_of_goal_states_in_vain_are_told_with_their_reason_if_they_are_many() -> None:
-    why = "task.goal.1 did not hold in 93% of the tries"
+    why = "task.goal.1 did not hold in 93% of the failed tries"
     draws = {"goal_draws": 600, "undrawn_reason": why}
     assert undrawn_goals({**draws, "undrawn_goals": 29}) is None
     assert undrawn_goals({"goal_draws": None, "undrawn_goals": None}) is None  # own data
