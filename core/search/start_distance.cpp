@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/world/separation.hpp"
@@ -67,11 +68,28 @@ bool in_place(const StateMetric& metric, const StateMetric::Object& o, const Pos
                     : (poses[o.body].position() - target[o.body].position()).norm()) <= kInPlace;
 }
 
-/// Returns whether gates are in the way of an object that is out of place.
-bool gates_are_shut(const StateMetric& metric, const Poses& poses, const Poses& target) {
-  return std::ranges::any_of(metric.objects(), [&](const auto& o) {
-    return metric.detour(o, poses, target) > kDetour && !in_place(metric, o, poses, target);
-  });
+/// Returns the gates that are in the way of an object that is out of place: those whose opening
+/// alone makes its way shorter, or all of them if only that does.
+std::vector<std::size_t> shut_gates(const StateMetric& metric, const Poses& poses,
+                                    const Poses& target) {
+  const std::vector<std::size_t> all(metric.gates().begin(), metric.gates().end());
+  std::vector<std::size_t> shut;
+  for (const auto& o : metric.objects()) {
+    const double detour = metric.detour(o, poses, target);
+    if (detour <= kDetour || in_place(metric, o, poses, target)) continue;
+    const auto frees = [&](const Poses& open) {
+      return metric.detour(o, open, target) < detour - kDetour;
+    };
+    Poses all_open = poses;
+    std::vector<std::size_t> alone;
+    for (const std::size_t gate : all) {
+      all_open = metric.opened(gate, all_open, target);
+      if (frees(metric.opened(gate, poses, target))) alone.push_back(gate);
+    }
+    if (alone.empty() && frees(all_open)) return all;
+    shut.insert(shut.end(), alone.begin(), alone.end());
+  }
+  return shut;
 }
 
 /// Estimates the number of pushes until the robot is in its own place, where all objects are.
@@ -93,16 +111,24 @@ double start_distance(const tasks::Task& task, const StateMetric& metric, const 
   const auto from_home = [&](const Vector2d& to) {
     return metric.way(0, poses, home, to).length / stride;
   };
-  const bool shut = gates_are_shut(metric, poses, target);
+  const std::vector<std::size_t> shut = shut_gates(metric, poses, target);
   double sum = 0.0, first = std::numeric_limits<double>::infinity();
   for (const auto& o : metric.objects()) {
-    const bool placed = in_place(metric, o, poses, target);
-    if (placed && !(shut && metric.is_gate(o.body))) continue;
-    const Vector2d from = poses[o.body].position(), to = target[o.body].position();
+    const bool opens = std::ranges::count(shut, o.body) > 0;
+    if (!opens && in_place(metric, o, poses, target)) continue;
+    const Vector2d from = poses[o.body].position();
+    Vector2d to = target[o.body].position();
     const double there = from_home(from);
-    sum += kPushesBetweenObjects + there + from_home(to) +
-           metric.distance_around(o, poses, target) / (stride * o.pace);
-    if (placed) continue;
+    sum += kPushesBetweenObjects + there + from_home(to);
+    if (opens) {
+      const Poses open = metric.opened(o.body, poses, target);
+      to = open[o.body].position();
+      sum +=
+          kPushesBetweenObjects + 2.0 * from_home(to) +
+          (metric.distance(o, poses, open) + metric.distance(o, open, target)) / (stride * o.pace);
+    } else {
+      sum += metric.distance_around(o, poses, target) / (stride * o.pace);
+    }
     const Vector2d way = metric.way(o.body, poses, from, to).next - from;
     first = std::min(first, approach_pushes(task, metric, poses, o.body, way) - there);
   }

@@ -14,8 +14,9 @@ namespace rtg::search {
 /// from there to the next. This is more than it needs, but an object that comes into place is
 /// progress in whatever order and however far the next is: the triangle inequality.
 ///
-/// Gates (StateMetric::is_gate()) that are in place, but in the way of an object that is not, count
-/// as out of place in the first sum: they have to be opened and shut again.
+/// Gates (StateMetric::gates()) that are in the way of an object that is out of place, wherever
+/// they are, have to be opened and shut again. Both are in the sum, and the robot goes to them
+/// first to pull them open, as far as their joint allows.
 ///
 /// σ is the pace of a push of the object (StateMetric::Object::pace): a push moves a heavy one by
 /// less than a stride.

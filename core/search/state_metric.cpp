@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/math/hash.hpp"
 #include "core/tasks/symmetry.hpp"
@@ -77,7 +78,15 @@ Ways::Way StateMetric::way(std::size_t body, const Poses& poses, const Vector2d&
   return found->second.between(a, b);
 }
 
-bool StateMetric::is_gate(std::size_t body) const { return std::ranges::count(gates_, body) > 0; }
+Poses StateMetric::opened(std::size_t gate, Poses poses, const Poses& target) const {
+  for (const Joint& joint : task_->scene.joints) {
+    if (static_cast<std::size_t>(joint.child) != gate) continue;
+    const double place = joint_value(joint, target);
+    const double open = joint.upper - place > place - joint.lower ? joint.upper : joint.lower;
+    set_joint_value(joint, std::isfinite(open) ? open : place + std::numbers::pi / 2.0, poses);
+  }
+  return poses;
+}
 
 double StateMetric::detour(const Object& o, const Poses& a, const Poses& b) const {
   if (gates_.empty() || !movers_[o.body]) return 0.0;

@@ -42,8 +42,12 @@ class StateMetric {
   /// thread-safe.
   Ways::Way way(std::size_t body, const Poses& poses, const Vector2d& a, const Vector2d& b) const;
 
-  /// Returns whether `body` hangs on a fixed body, as gates do.
-  bool is_gate(std::size_t body) const;
+  /// Returns the bodies that hang on fixed ones.
+  std::span<const std::size_t> gates() const { return gates_; }
+
+  /// Returns `poses` with a gate at the limit of its joint that is the farther one from its value
+  /// in `target`, or a quarter turn from that value if there is no such limit.
+  Poses opened(std::size_t gate, Poses poses, const Poses& target) const;
 
   /// Returns how much longer gates make the way() of `object` from where it is in `a` to where it
   /// is in `b` [m].

@@ -176,6 +176,24 @@ tasks::Task gate() {
   return task;
 }
 
+// A leaf that is shut at the start and at the goal has to be opened in between.
+TEST(StartDistance, OpeningAGateThatIsInTheWayIsProgress) {
+  tasks::Task task = gate();
+  task.scene.joints[0].lower = -1.6;
+  task.scene.joints[0].upper = 0.1;
+  const StateMetric metric(task);
+  Poses poses = task.start;
+  poses[1] = {0.0, 4.0, 0.0};
+  double last = start_distance(task, metric, poses, task.start);
+  for (const double angle : {-0.4, -0.8, -1.2}) {
+    poses[4].theta = angle;
+    poses = with_closed_joints(task.scene, poses);
+    const double now = start_distance(task, metric, poses, task.start);
+    EXPECT_LT(now, last) << angle;
+    last = now;
+  }
+}
+
 TEST(StartDistance, KnowsTheWayAroundWallsAndThroughAnOpenGate) {
   const tasks::Task task = gate();
   const StateMetric metric(task);
