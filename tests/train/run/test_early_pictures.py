@@ -35,6 +35,20 @@ def test_what_limits_the_generation_is_said_before_the_training(plan, drawn, mon
         assert said == (["no tree reaches the start"] if trains else [])
 
 
+def test_what_limits_the_generation_is_said_again_when_the_user_stops_the_run(
+    plan, drawn, monkeypatch
+) -> None:
+    monkeypatch.setattr(results, "generation_warning", lambda plan: "no tree reaches the start")
+    said = []
+    with EarlyPictures(plan, said.append) as pictures:
+        pictures.warn_again()
+        assert said == [], "the generation is not over"
+        plan.report_file.write_text("{}")
+        assert drawn.wait(20.0)
+        pictures.warn_again()
+    assert said == ["no tree reaches the start"] * 2
+
+
 def test_they_are_drawn_as_soon_as_the_generation_has_ended(plan, drawn) -> None:
     with EarlyPictures(plan, print) as pictures:
         assert not drawn.wait(0.3)

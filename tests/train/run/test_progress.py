@@ -53,12 +53,21 @@ def test_elsewhere_the_last_line_of_each_half_says_that_the_results_are_to_come(
     assert line.endswith("812 interactions/s, results to come")
 
 
-def test_elsewhere_the_time_left_of_a_run_is_a_guess_until_learning_has_a_rate(monkeypatch):
+@pytest.mark.parametrize(
+    ("budget", "words"),
+    [
+        (6000, "at most 1:40 left"),  # 20 s + 60 s at 100 interactions/s + results
+        (0, "about 0:40 left"),
+    ],
+)
+def test_elsewhere_the_time_left_is_a_bound_where_training_may_end_early(
+    monkeypatch, budget, words
+):
     clock = iter((0.0, 10.0))
     monkeypatch.setattr("rtg.run.progress.time.monotonic", lambda: next(clock))
-    begun = replace(GENERATING, transitions=0, budget=6000)
+    begun = replace(GENERATING, transitions=0, budget=budget)
     _, line = plain(begun, replace(begun, layer=3, transitions=20_000))
-    assert line.endswith(", about 1:40 left")  # 20 s + 60 s at 100 interactions/s + results
+    assert line.endswith(f", {words}")
 
 
 def test_nothing_is_said_about_a_generation_that_has_not_begun():

@@ -118,7 +118,9 @@ def test_what_falls_short_is_the_last_word_before_the_folder(tmp_path):
         (tmp_path / "generation.json").write_text(json.dumps({**found, **report}))
         last = results.summary_text(plan, found).splitlines()[-2]
         assert last.startswith("bottleneck: reaching the start") == (reached == 0)
-        assert results.generation_warning(plan) is None, "many such runs learn"
+        early = results.generation_warning(plan)
+        words = "these data may not suffice, though such data often do: reaching the start: no tree"
+        assert early is None if reached else early.startswith(words)
 
 
 def test_goal_states_drawn_in_vain_are_told_once(tmp_path):

@@ -79,12 +79,13 @@ def of_search(config: _core.Config, report: dict[str, Any]) -> str | None:
     return None
 
 
-def _of_starts(config: _core.Config, report: dict[str, Any]) -> str | None:
+def of_starts(config: _core.Config, report: dict[str, Any]) -> str | None:
     """Returns a sentence about trees none of which comes to its start; None if one does.
 
     Runs with such trees often learn all the same: it explains a failure, and foretells none.
+    `report`: generation.json, of which of_search() says nothing.
     """
-    if report["starts_reached"]:
+    if config.search.generator not in TREE_GENERATORS or report["starts_reached"]:
         return None
     trees = report["trees"]
     deepest = max(node["depth"] for node in report["nodes"])
@@ -150,6 +151,6 @@ def bottleneck(config: _core.Config, summary: dict[str, Any], report: dict[str, 
         return None
     if (summary.get("success_rate") or 0.0) >= _WELL:
         return None
-    lacks = of_own_data(own) if own else of_search(config, report) or _of_starts(config, report)
+    lacks = of_own_data(own) if own else of_search(config, report) or of_starts(config, report)
     found = lacks or _learning(config, summary)
     return found and f"bottleneck: {found}"

@@ -26,6 +26,7 @@ class EarlyPictures:
         self._is_stale = plan.report_file.exists() and not plan.is_generated()
         self._over = threading.Event()
         self._is_finished = False  # the run is, not stopped or failed
+        self._warning: str | None = None  # that was noted
         self._pool = ThreadPoolExecutor(1)
 
     def __enter__(self) -> Self:
@@ -47,6 +48,11 @@ class EarlyPictures:
         self._over.set()
         self._drawn.result()
 
+    def warn_again(self) -> None:
+        """Says once more what limits the generation; to be called when the user stops the run."""
+        if self._warning:
+            self._note(self._warning)
+
     def _draw(self) -> None:
         while self._is_stale or not self._plan.report_file.exists():
             if self._over.wait(_POLL):
@@ -56,4 +62,5 @@ class EarlyPictures:
 
             if self._plan.train and (words := results.generation_warning(self._plan)):
                 self._note(words)
+                self._warning = words
             results.draw_generation(self._plan)

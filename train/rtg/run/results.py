@@ -55,6 +55,7 @@ def draw_generation(plan: RunPlan) -> None:
 
 def generation_warning(plan: RunPlan) -> str | None:
     """Returns a sentence about what the data of a run lack; None if nothing."""
+    words = "these data may not suffice"
     report = run_folder.read_json(plan.report_file)
     with errors.fields_of(plan.report_file):
         found = (
@@ -63,7 +64,10 @@ def generation_warning(plan: RunPlan) -> str | None:
             else diagnosis.of_search(plan.config, report)
         )
         found = found or diagnosis.undrawn_goals(report)
-    return found and f"these data may not suffice: {found}"
+        if not found and not plan.own_data:
+            found = diagnosis.of_starts(plan.config, report)
+            words += ", though such data often do"
+    return found and f"{words}: {found}"
 
 
 def _trained(plan: RunPlan) -> bool:

@@ -44,6 +44,7 @@ def _carry_out(plan: RunPlan) -> int:
         try:
             measured = _generate_and_train(plan, shown)
         except StoppedError:
+            pictures.warn_again()
             flags = "--resume" if plan.train else "--resume --no-train"
             command = f"{paths.COMMAND} {flags} --out {shlex.quote(str(plan.folder))}"
             raise RunError(f"stopped; to go on: {command}") from None

@@ -56,5 +56,4 @@ def words(seconds: float | None, state: RunState) -> str:
         return ""
     if not seconds:
         return "results to come"
-    is_guess = state.interactions < state.budget and not state.rate
-    return f"{'about' if is_guess else 'at most'} {duration(seconds)} left"
+    return f"{'at most' if state.budget else 'about'} {duration(seconds)} left"
