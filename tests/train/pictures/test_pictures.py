@@ -286,6 +286,31 @@ def test_the_region_in_which_an_object_starts_is_in_its_panel_alone(figures):
     assert "dashed" not in figures[1].get_supxlabel()
 
 
+DISC = "disc: {centre: [1, 1], radius: 0.5}"
+POSE = "pose: [0, 0, 0], within: [0.1, 0.2]"
+AREA, OUTLINE = "goal of the centre", "outline that the object is to have"
+AVOIDED = "in red, what it is to avoid"
+
+
+@pytest.mark.parametrize(
+    ("goal", "words"),
+    [
+        (f"{{{DISC}}}", [AREA]),
+        ("{covers: {at: [0, 0, 0], share: 0.9}}", [OUTLINE]),
+        (f"{{{POSE}}}, {{{DISC}, not: true}}", [AREA, OUTLINE, AVOIDED]),
+        (f"{{{DISC}, not: true}}, {{angle: [1, 2]}}", [AVOIDED]),
+        ("{angle: [1, 2]}", []),
+    ],
+)
+def test_the_coverage_says_what_its_marks_mean(figures, goal, words):
+    task = _core.Config.from_file(paths.CONFIG / "push_t.yaml", [f"task.goal=[{goal}]"]).task
+    start = task.start[None]
+    plots.coverage(Path("coverage.png"), "a run", task, start, np.zeros(1), start, {})
+    said = figures[0].get_supxlabel()
+    assert [word for word in (AREA, OUTLINE, AVOIDED) if word in said] == words
+    assert ("shaded: " in said) == bool(words)
+
+
 @pytest.mark.parametrize(("rollouts", "shown"), [(0.5, 2), (float("nan"), 1)])
 def test_a_single_evaluation_is_a_dot_and_what_is_not_measured_is_not_in_the_legend(
     figures, rollouts, shown
@@ -415,6 +440,17 @@ def test_the_picture_of_a_task_says_which_term_left_a_goal_state_out(tmp_path, m
     assert [tile.caption for tile in tiles].count("a goal state") == 3
     assert title.endswith("; no goal state 2: task.goal.0 did not hold in 93% of the failed tries")
     assert TASK.why_no_goal_state(1, 0) == ""
+
+
+def test_the_picture_of_a_task_says_who_is_to_avoid_what_is_red(tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(task_picture, "write_sheet", lambda *args: drawn.append(args))
+    avoided = f"{{{DISC}, not: true}}, {{kind: t, {DISC}, not: true}}"
+    goal = f"task.goal=[{avoided}, {{{POSE}}}]"
+    task_picture.draw(
+        tmp_path / "task.png", _core.Config.from_file(paths.CONFIG / "push_t.yaml", [goal])
+    )
+    assert drawn[0][-1].endswith("; red: to be avoided by any object or by 't'")
 
 
 def test_sheets_as_pdf_and_svg_are_drawn_by_vectors(tmp_path):

@@ -23,6 +23,7 @@ from rtg.pictures.draw import (
     INK,
     PAPER,
     ROBOT,
+    MarkLike,
     TaskLike,
     mark_colour,
     objects,
@@ -234,6 +235,23 @@ def robustness(path: Path, title: str, rows: Sequence[RobustnessRow]) -> None:
         save(figure, path)
 
 
+def _marks_of(task: TaskLike, body: int) -> list[MarkLike]:
+    return [mark for mark in task.goal_marks if mark.kind in ("*", task.kinds[body])]
+
+
+def _marks_in_words(marks: Sequence[MarkLike]) -> str:
+    """Says in a line what the marks of a goal mean; "" if there are none."""
+    asked = [mark for mark in marks if not mark.negated]
+    words = []
+    if any(not mark.target for mark in asked):
+        words.append("goal of the centre, or of a mean that includes it")
+    if any(mark.target for mark in asked):
+        words.append("outline that the object is to have")
+    if len(asked) < len(marks):
+        words.append("in red, what it is to avoid")
+    return f"shaded: {'; '.join(words)}\n" if words else ""
+
+
 def _draw_scene(axis: Axes, task: TaskLike, body: int, drawn: Container[int]) -> None:
     """Draws the arena, the outlines of bodies at the start, and the goal of `body`.
 
@@ -241,9 +259,8 @@ def _draw_scene(axis: Axes, task: TaskLike, body: int, drawn: Container[int]) ->
     marks of the terms on the kind of `body`.
     """
     a = task.arena
-    for mark in task.goal_marks:
-        if mark.kind in ("*", task.kinds[body]):
-            axis.fill(*mark.ring.T, color=_rgb(mark_colour(task, mark)), alpha=0.18, lw=0)
+    for mark in _marks_of(task, body):
+        axis.fill(*mark.ring.T, color=_rgb(mark_colour(task, mark)), alpha=0.18, lw=0)
     for other, rings in enumerate(task.outlines):
         if other in drawn:
             continue
@@ -314,7 +331,7 @@ def coverage(
             "dots: centres of the object in the search's nodes\n"
             "crosses: in the starts that the trees grew towards\noutlines: bodies at the start"
             f"{in_ranges if start_regions.keys() & set(bodies) else ''}\n"
-            "shaded: goal of the centre, or of a mean that includes it\n"
+            f"{_marks_in_words([mark for body in bodies for mark in _marks_of(task, body)])}"
             f"frame: arena, {2 * task.arena / task.metre:g} m wide",
             fontsize=8,
         )

@@ -21,8 +21,8 @@ def _title(task: _core.Task) -> str:
         words += "; pale: where joints are to stand"
     marks = [*task.goal_marks, *task.body_marks(task.start[None])]
     kinds = sorted({mark.kind for mark in marks if mark.negated})
-    avoided = ", ".join("any object" if kind == "*" else f"'{kind}'" for kind in kinds)
-    return f"{words}; red: what {avoided} must avoid" if kinds else words
+    avoiding = " or by ".join("any object" if kind == "*" else f"'{kind}'" for kind in kinds)
+    return f"{words}; red: to be avoided by {avoiding}" if kinds else words
 
 
 def draw(path: Path, config: _core.Config) -> None:
