@@ -71,6 +71,12 @@ std::optional<Eigen::AlignedBox2d> as_upright_box(const Polygon& polygon) {
   return box;
 }
 
+/// Says between which values a coordinate lies. A range of a start that is one number is 1e-6 wide.
+std::string side_in_words(char axis, double least, double most, double metre) {
+  if (most - least < 1e-5) return print("%c = %.4g m", axis, metre * (least + most) / 2.0 + 0.0);
+  return print("%c ", axis) + lengths_in_words(metre * least, metre * most);
+}
+
 std::string region_in_words(const tasks::Region& region, double metre) {
   if (const auto* disc = std::get_if<tasks::Disc>(&region))
     return print("within %.4g m of (%.4g, %.4g)", metre * disc->radius, metre * disc->centre.x(),
@@ -79,8 +85,8 @@ std::string region_in_words(const tasks::Region& region, double metre) {
     return "at " + half_plane_in_words(half->normal, metre * half->offset);
   const Polygon& polygon = std::get<Polygon>(region);
   if (const auto box = as_upright_box(polygon))
-    return print("at x from %.4g to %.4g m, y from %.4g to %.4g m", metre * box->min().x(),
-                 metre * box->max().x(), metre * box->min().y(), metre * box->max().y());
+    return "at " + side_in_words('x', box->min().x(), box->max().x(), metre) + ", " +
+           side_in_words('y', box->min().y(), box->max().y(), metre);
   std::string out = "in the polygon";
   for (const Vector2d& v : polygon.vertices)
     out += print(" (%.4g, %.4g)", metre * v.x(), metre * v.y());
@@ -88,9 +94,10 @@ std::string region_in_words(const tasks::Region& region, double metre) {
 }
 
 std::string range_in_words(const tasks::StartRange& range, double metre) {
-  const bool any = range.most - range.least > 2.0 * std::numbers::pi - 1e-3;
-  return region_in_words(range.region, metre) + ", " +
-         (any ? "any angle" : angles_in_words(range.least, range.most));
+  std::string angles = angles_in_words(range.least, range.most);
+  if (range.most - range.least > 2.0 * std::numbers::pi - 1e-3) angles = "any angle";
+  if (range.most == range.least) angles = print("%.4g deg", degrees(range.least));
+  return region_in_words(range.region, metre) + ", " + angles;
 }
 
 std::string start_in_words(const tasks::Task& task, std::size_t i) {
@@ -163,7 +170,7 @@ struct ConditionWords {
   }
   std::string operator()(const tasks::JointIn& c) const {
     return c.type == JointType::kPrismatic
-               ? "is out " + lengths_in_words(metre * c.least, metre * c.most)
+               ? print("is between %.4g and %.4g m", metre * c.least, metre * c.most)
                : "has an angle " + angles_in_words(c.least, c.most);
   }
   std::string operator()(const tasks::PoseNear& c) const {

@@ -224,6 +224,32 @@ def test_check_says_which_objects_start_around_their_places() -> None:
     assert "layout above" not in said(both)
 
 
+@pytest.mark.parametrize(
+    ("start", "words"),
+    [
+        ("{x: [2, 4], y: 0, theta: 0}", "at x from 2 to 4 m, y = 0 m, 0 deg"),
+        (
+            "{x: 3, y: [-1, 1], theta: [0, 1.5]}",
+            "at x = 3 m, y from -1 to 1 m, from 0 to 85.94 deg",
+        ),
+        ("{in: {disc: {centre: [3, 0], radius: 1}}}", "within 1 m of (3, 0), any angle"),
+    ],
+)
+def test_check_says_what_a_start_is_drawn_from(start: str, words: str) -> None:
+    said = _core.Config.from_text(TASK.replace("[3, 0, 0]", start), "starts").description
+    assert f"friction 0.30  {words}\n" in said
+
+
+def test_check_says_how_far_a_joint_is_to_slide() -> None:
+    joint = "{parent: a, child: b, type: prismatic, axis: [1, 0]}"
+    text = TASK.replace("  push:", f"  joints: [{joint}]\n  push:")
+    text = text.replace(
+        "kind: box, disc: {centre: [0, 0], radius: 2}", "joint: b, slides: [1, 1.5]"
+    )
+    said = _core.Config.from_text(text, "joint").description
+    assert "  the joint of 'b' is between 1 and 1.5 m\n" in said
+
+
 def test_check_says_joints_and_goals_of_a_chain() -> None:
     config = _core.Config.from_file(paths.CONFIG / "art_manip.yaml")
     said = config.description.split("actions\n")[0].splitlines()
