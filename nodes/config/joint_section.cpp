@@ -34,9 +34,12 @@ int read_body_name(const FieldReader& reader, const char* key, const Scene& scen
     if (scene.bodies[i].name == name) return static_cast<int>(i);
     names.push_back(scene.bodies[i].name);
   }
-  throw ConfigError(reader.required(key, "").value.origin, reader.path(key),
-                    '\'' + name + "' is not the name of an object" + suggestion(name, names),
-                    listed(names));
+  const bool is_robot = name == scene.bodies[0].name;
+  throw ConfigError(
+      reader.required(key, "").value.origin, reader.path(key),
+      '\'' + name + "' is not the name of an object" +
+          (is_robot ? " (joints connect objects, not the robot)" : suggestion(name, names)),
+      listed(names));
 }
 
 [[noreturn]] void fail_at(const ConfigNode& section, std::size_t k, const char* key,

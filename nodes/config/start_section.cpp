@@ -134,11 +134,11 @@ constexpr int kTries = 200;  // draws of a body from its range
 /// Throws ConfigError if all places that body `i` is drawn from are out of the arena, or overlap
 /// one fixed body.
 void check_range(const tasks::Task& task, std::size_t i, const ConfigNode& section) {
-  const auto fail = [&](const std::string& wrong) {
+  const auto fail = [&](const std::string& wrong, const std::string& legal) {
     fail_at(find(section, "bodies")->value.items[i], "task.bodies." + std::to_string(i), "start",
             "puts '" + task.scene.bodies[i].name + "' " + wrong + " in all of " +
                 std::to_string(kTries) + " draws",
-            "a range with room for the body");
+            legal);
   };
   Rng rng(1);
   int outside = 0;
@@ -151,9 +151,13 @@ void check_range(const tasks::Task& task, std::size_t i, const ConfigNode& secti
                      separation(task.scene.bodies[i].shape, pose, task.scene.bodies[j].shape,
                                 task.start[j]) < tasks::kStartClearance;
   }
-  if (outside == kTries) fail("out of the arena");
+  const std::string arena = length_text(task.push.arena, task.units);
+  if (outside == kTries)
+    fail("out of the arena",
+         "a range with x and y from -" + arena + " to " + arena + " m (task.push.arena)");
   for (std::size_t j = 0; j < task.scene.size(); ++j)
-    if (overlaps[j] == kTries) fail("onto '" + task.scene.bodies[j].name + "'");
+    if (overlaps[j] == kTries)
+      fail("onto '" + task.scene.bodies[j].name + "'", "a range with room for the body");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,12 @@ namespace rtg::config {
 namespace {
 
 constexpr std::size_t kLongest = 40;  // characters of a word for which others are tried
+
+/// Keys as users may call them, and their names here. Of a name with a dot, the section is a word.
+constexpr std::pair<std::string_view, std::string_view> kSynonyms[] = {
+    {"tolerance", "within"}, {"circle", "disc"},          {"angle", "theta"},
+    {"rectangle", "box"},    {"polygon", "vertices"},     {"stride", "push.stride"},
+    {"arena", "push.arena"}, {"strides", "push.strides"}, {"headings", "push.headings"}};
 
 /// Returns the Levenshtein distance of two texts.
 std::size_t edits(const std::string& a, const std::string& b) {
@@ -28,6 +35,9 @@ std::size_t edits(const std::string& a, const std::string& b) {
 
 std::string suggestion(const std::string& word, std::span<const std::string> words) {
   if (words.empty() || word.empty() || word.size() > kLongest) return "";
+  for (const auto& [called, name] : kSynonyms)
+    if (called == word && std::ranges::count(words, name.substr(0, name.find('.'))))
+      return " (did you mean '" + std::string(name) + "'?)";
   const auto nearest = std::min_element(
       words.begin(), words.end(),
       [&](const auto& a, const auto& b) { return edits(word, a) < edits(word, b); });

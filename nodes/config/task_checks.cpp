@@ -74,6 +74,11 @@ std::string legal_kinds(const Scene& scene) {
   return with_kinds({"\"*\""}, scene, [&](std::size_t i) { return !scene.bodies[i].fixed; });
 }
 
+/// Says what goals are about if `kind` is that of the robot.
+std::string robot_hint(const std::string& kind, const Scene& scene) {
+  return kind == scene.bodies[0].kind ? " (goals are about objects, not about the robot)" : "";
+}
+
 /// Returns whether an object beside object `i` is of kind `kind`, or can move if that is "*".
 bool has_other(const Scene& scene, std::size_t i, const std::string& kind) {
   for (std::size_t j = 1; j < scene.size(); ++j)
@@ -160,7 +165,7 @@ void check_other(const tasks::GoalTerm& term, const tasks::Task& task, const Con
         throw ConfigError(find(node, key)->value.origin, path + '.' + key,
                           kind == "*" ? "no object beside '" + scene.bodies[i].name + "' can move"
                                       : "no object beside '" + scene.bodies[i].name +
-                                            "' is of kind '" + kind + "'",
+                                            "' is of kind '" + kind + "'" + robot_hint(kind, scene),
                           legal_others(scene, i));
   };
   if (const auto* touches = std::get_if<tasks::Touches>(&term.condition))
@@ -208,7 +213,8 @@ void check_term(const tasks::Task& task, std::size_t k, const ConfigNode& sectio
         of_joint ? (of_joint->type == JointType::kPrismatic ? "no prismatic joint has the child '"
                                                             : "no revolute joint has the child '") +
                        term.kind + "'"
-                 : "no object that can move is of kind '" + term.kind + "'",
+                 : "no object that can move is of kind '" + term.kind + "'" +
+                       robot_hint(term.kind, task.scene),
         of_joint ? legal_joints(task, of_joint->type) : legal_kinds(task.scene));
   }
   check_other(term, task, node, path);
