@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import tracemalloc
 
 import gymnasium
@@ -13,7 +14,7 @@ from rtg.errors import UserError
 from rtg.files import minari_data
 
 minari = pytest.importorskip("minari", reason="the extra `minari` is not installed")
-pytest.importorskip("h5py", reason="the extra `minari` is not installed")
+h5py = pytest.importorskip("h5py", reason="the extra `minari` is not installed")
 
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning")  # of authors and links
 TASK = _core.Config.from_file(paths.CONFIG / "gathering.yaml").task
@@ -194,3 +195,59 @@ def test_a_data_set_with_changed_bytes_is_read_or_refused(home):
             assert most < 64e6 + 4 * len(whole)
         (folder / name).write_bytes(whole)
         assert refused > 10
+
+
+def test_a_fifo_is_refused_as_it_would_never_begin():
+    folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1))
+    (folder / "main_data.hdf5").unlink()
+    os.mkfifo(folder / "main_data.hdf5")
+    with pytest.raises(UserError, match=r"mine-v0: .*Is no regular file.*; legal: "):
+        minari_data.read("mine-v0", folder, TASK)
+
+
+def unwritten(infos):
+    infos.create_dataset("poses", (60_000_000, 4, 3), "f8", chunks=(1000, 4, 3))
+
+
+def linked(infos):
+    os.mkfifo("fifo")
+    infos["poses"] = h5py.ExternalLink("fifo", "/")
+
+
+def elsewhere(infos):
+    infos.create_dataset("poses", (4, 4, 3), "f8", external=[("fifo", 0, h5py.h5f.UNLIMITED)])
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (unwritten, "it would take more than four times its size"),
+        (linked, "episode_0/infos/poses is a link"),
+        (elsewhere, "episode_0/infos/poses has no numbers in the file"),
+    ],
+)
+def test_poses_that_are_not_in_the_file_are_refused(change, why, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1))
+    with h5py.File(folder / "main_data.hdf5", "a") as file:
+        del file["episode_0/infos/poses"]
+        change(file["episode_0/infos"])
+    with pytest.raises(UserError, match=f"mine-v0: .*{why}.*; legal: "):
+        minari_data.read("mine-v0", folder, TASK)
+
+
+def test_what_is_not_needed_is_not_read():
+    folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1))
+    with h5py.File(folder / "main_data.hdf5", "a") as file:
+        file["episode_0/infos"].create_dataset("huge", (4, 10**12), chunks=(1, 1000))
+    assert len(minari_data.read("mine-v0", folder, TASK).rows.action) == 3
+
+
+def test_an_environment_of_a_stranger_is_not_made_without_its_spaces(monkeypatch):
+    """Minari would make it to learn of its spaces."""
+    folder = made("mine-v0", episode(gymnasium.make("RTG/Gathering-v0"), 1))
+    metadata = json.loads((folder / "metadata.json").read_text())
+    del metadata["action_space"]
+    (folder / "metadata.json").write_text(json.dumps(metadata))
+    monkeypatch.setattr(gymnasium, "make", lambda *_, **__: pytest.fail("was made"))
+    assert len(minari_data.read("mine-v0", folder, TASK).rows.action) == 3

@@ -25,11 +25,15 @@ from rtg.files import whole_files
 _END, _END_LENGTH = b"PK\x05\x06", 22
 _DIGITS = 64
 _BLOCK = 2**20
-_ROOM = 2**26  # bytes that any archive may unpack to
 _HEADERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
     (2, 0): np.lib.format.read_array_header_2_0,
 }
+
+
+def room(size: int) -> int:
+    """Returns the bytes to which a file of `size` bytes may unpack."""
+    return 2**26 + 4 * size
 
 
 @contextlib.contextmanager
@@ -63,7 +67,7 @@ def opened(path: Path) -> Iterator[BinaryIO]:
                 unpacked = sum(entry.file_size for entry in archive.infolist())
         except Exception as error:  # zipfile raises any error on foreign bytes
             raise ValueError(str(error)) from None
-        if unpacked > _ROOM + 4 * size:
+        if unpacked > room(size):
             raise ValueError(f"it would unpack to {unpacked} bytes")
         file.seek(0)
         yield file
