@@ -168,6 +168,22 @@ def test_archives_of_others_are_read_or_refused(name: str, tmp_path: Path) -> No
     assert refused > CHANGES / 20
 
 
+BYTES = b"\x80\x02cbuiltins\nbytearray\nJ\x00\x00\x00\x08\x85R."  # bytearray(2**27), pickled
+
+
+@pytest.mark.parametrize("member", ["archive/data.pkl", "archive/DATA.PKL"])
+@pytest.mark.parametrize("before", [b"", BYTES])
+def test_a_pickle_that_asks_for_memory_gets_none(
+    member: str, before: bytes, tmp_path: Path
+) -> None:
+    path = tmp_path / "state.pt"
+    repacked({member: BYTES, "archive/version": b"3\n", "archive/byteorder": b"little"}, path)
+    path.write_bytes(before + path.read_bytes())
+    with pytest.raises(UserError, match="is damaged or foreign; legal: ") as error:
+        checkpoint.read(path)
+    assert str(error.value.__cause__) in ("it asks for builtins bytearray", "no archive of PyTorch")
+
+
 def array_file(kind: str, shape: str) -> bytes:
     """Returns a .npy that tells of an array of that type and shape, and holds nothing of it."""
     words = f"{{'descr': {kind!r}, 'fortran_order': False, 'shape': {shape}}}\n".encode()

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import io
+import pickletools
+import re
+import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import torch as th
 
 from rtg.errors import UserError
 from rtg.files import archives
+
+_LEGAL = re.compile(
+    r"torch [A-Z][a-zA-Z0-9]*Storage|torch\._utils _rebuild_tensor_v2|collections OrderedDict"
+)
 
 
 def write(path: Path, state: dict[str, Any]) -> None:
@@ -28,6 +35,7 @@ def read(path: Path) -> dict[str, Any]:
     """
     try:
         with archives.opened(path) as file:
+            _check_globals(file)
             state = th.load(file, map_location="cpu", weights_only=True)
     except FileNotFoundError:
         raise UserError(
@@ -42,6 +50,23 @@ def read(path: Path) -> dict[str, Any]:
             f"{path}: holds a {type(state).__name__}, not a dict; legal: a file that RTG wrote"
         )
     return state
+
+
+def _check_globals(file: BinaryIO) -> None:
+    """Raises ValueError if an archive asks for more than numbers, texts, tensors and dictionaries.
+
+    PyTorch makes a bytearray of any length for a file of 400 bytes, and takes the names of an
+    archive in either case.
+    """
+    if file.read(4) != b"PK\x03\x04":  # PyTorch would read what is before the archive
+        raise ValueError("no archive of PyTorch")
+    with zipfile.ZipFile(file) as archive:
+        for entry in archive.infolist():
+            if entry.filename.lower().endswith(".pkl"):
+                for operation, name, _ in pickletools.genops(archive.read(entry)):
+                    if operation.name == "GLOBAL" and not _LEGAL.fullmatch(str(name)):
+                        raise ValueError(f"it asks for {name}")
+    file.seek(0)
 
 
 def _portable(value: Any) -> Any:
