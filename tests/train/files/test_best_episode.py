@@ -28,3 +28,10 @@ def test_a_file_that_lacks_an_array_is_refused(tmp_path):
     np.savez(tmp_path / best_episode.FILE, poses=STATES)
     with pytest.raises(UserError, match=r"best_episode\.npz: is damaged"):
         best_episode.read(tmp_path, 4)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_states_that_are_not_finite_are_refused(tmp_path, value):
+    best_episode.write(tmp_path, np.where(STATES == 5.0, value, STATES), True)
+    with pytest.raises(UserError, match=r"best_episode\.npz: is damaged"):
+        best_episode.read(tmp_path, 4)

@@ -90,6 +90,14 @@ def test_a_damaged_report_is_named(tmp_path, rows):
         events(folder).new()
 
 
+@pytest.mark.parametrize("text", ["wall_s\n1\n", "interactions\n1\n", "interactions,wall_s\n,1\n"])
+def test_a_curve_that_lacks_interactions_or_times_is_named(tmp_path, rows, text):
+    folder = generated(tmp_path / "run", rows)
+    (folder / "progress.csv").write_text(text)
+    with pytest.raises(UserError, match=r"progress\.csv: has other fields"):
+        events(folder).new()
+
+
 def test_a_report_of_another_kind_is_named(tmp_path, rows):
     folder = generated(tmp_path / "run", rows)
     (folder / "generation.json").write_text(json.dumps({"generate_wall_s": [1.0]}))

@@ -10,7 +10,7 @@ pytest.importorskip("rerun", reason="the extra view is not installed")
 
 import rerun.chunk
 from recordings import lines, read
-from rtg.errors import UserError
+from rtg.errors import RunError, UserError
 from rtg.files import locks
 from rtg.files.dataset import SOURCES
 from rtg.pictures.draw import KIND_PALETTE, ROBOT, objects, outline
@@ -216,3 +216,19 @@ def test_a_recording_needs_a_fitting_name_in_a_folder(tmp_path, rows, file, why)
         view.save(finished(tmp_path / "run", rows), tmp_path / file, lambda words: None)
     expected = f"--save {tmp_path / file}: {why.replace('TMP', str(tmp_path))}"
     assert str(told.value).startswith(expected)
+
+
+def test_a_recording_that_cannot_be_written_whole_leaves_the_one_before(
+    tmp_path, rows, monkeypatch
+):
+    file = tmp_path / "run.rrd"
+    file.write_bytes(b"before")
+
+    def fail(_):
+        raise RuntimeError("the writer has ended")
+
+    monkeypatch.setattr(Session, "finish", fail)
+    with pytest.raises(RunError, match=f"^--save {file}: the writer has ended"):
+        view.save(finished(tmp_path / "run", rows), file, lambda words: None)
+    assert file.read_bytes() == b"before"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run", "run.rrd"]

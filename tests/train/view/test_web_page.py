@@ -1,5 +1,6 @@
 """The page goes through a server that keeps it to this machine."""
 
+import socket
 import threading
 import urllib.error
 import urllib.parse
@@ -66,6 +67,35 @@ def test_other_files_pass_as_they_are(page):
 def test_a_missing_file_is_missing(page):
     with pytest.raises(urllib.error.HTTPError, match="404"):
         get(page.address + "none")
+
+
+@pytest.mark.parametrize(
+    ("path", "status"),
+    [(b"/\x01", 404), ("/ä".encode(), 404), (b"http://[/", 400), (b"//[", 404)],
+)
+def test_a_path_of_any_bytes_is_answered(page, path, status, capsys):
+    port = urllib.parse.urlsplit(page.address).port
+    with socket.create_connection((web_page.HOST, port)) as client:
+        client.sendall(b"GET " + path + b" HTTP/1.0\r\nHost: 127.0.0.1\r\n\r\n")
+        assert client.makefile("rb").readline().split()[1] == str(status).encode()
+    assert capsys.readouterr().err == ""
+
+
+def test_a_tab_that_is_closed_is_no_error(page, monkeypatch, capsys):
+    ended = threading.Event()
+
+    def answer(*_):
+        raise ConnectionResetError
+
+    def shutdown_request(server, request, shutdown=web_page.ThreadingHTTPServer.shutdown_request):
+        shutdown(server, request)
+        ended.set()
+
+    monkeypatch.setattr(web_page, "_answer", answer)
+    monkeypatch.setattr(web_page.ThreadingHTTPServer, "shutdown_request", shutdown_request)
+    with pytest.raises(OSError):
+        get(page.address)
+    assert ended.wait(10.0) and capsys.readouterr().err == ""
 
 
 def test_the_policy_allows_this_machine_alone(page):

@@ -32,6 +32,8 @@ def read(run: Path, bodies: int) -> tuple[Floats, bool]:
         poses, success = np.asarray(found["poses"], np.float64), bool(found["success"])
         if poses.ndim != 3 or poses.shape[1:] != (bodies, 3) or not len(poses):
             raise ValueError(poses.shape)
+        if not np.isfinite(poses).all():
+            raise ValueError("not finite")
     except (OSError, ValueError, TypeError, KeyError):
         raise UserError(
             f"{path}: is damaged; legal: the file as the run wrote it, or no file"

@@ -120,7 +120,11 @@ class RunEvents:
     def _learning(self) -> list[Event]:
         if not self._changed("progress.csv"):
             return []
-        curve = learning_curve(self._folder / "progress.csv")
+        file = self._folder / "progress.csv"
+        curve = learning_curve(file)
+        with errors.fields_of(file):
+            if curve and not np.isfinite([curve["interactions"], curve["wall_s"]]).all():
+                raise ValueError("interactions and wall_s have to be numbers")
         count = len(curve["interactions"]) if curve else 0
         in_row = self._config.train.offline and self._config.run.in_process
         begin = self._generation_time() if in_row else 0.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib.util
+import os
 import subprocess
 import tempfile
 import time
@@ -11,7 +12,7 @@ import webbrowser
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from rtg.errors import RunError, StoppedError, UserError
+from rtg.errors import RunError, StoppedError, UserError, in_words
 from rtg.processes.children import Node, stop_all
 from rtg.processes.interrupts import Interrupts
 from rtg.view import web_page
@@ -100,8 +101,30 @@ def serve(folder: Path, port: int, browser: bool, say: Say) -> None:
             time.sleep(_POLL)
 
 
-def _check_target(file: Path) -> None:
-    """Raises UserError if a recording cannot be written to `file`."""
+@contextlib.contextmanager
+def _draft(file: Path) -> Iterator[Path]:
+    """Yields the path of a recording that takes the place of `file` after the `with` block.
+
+    Raises RunError if Rerun fails to write it.
+    """
+    draft = file.parent / f".{file.name}.{os.getpid()}"
+    try:
+        yield draft
+        draft.replace(file)
+    except RuntimeError as error:  # Rerun keeps the cause to itself, but it meets us as well
+        try:
+            with draft.open("ab") as end:
+                end.write(bytes(1 << 20))
+        except OSError as cause:
+            raise in_words(cause, file) from None
+        raise RunError(f"--save {file}: {error}") from None
+    finally:
+        with contextlib.suppress(OSError):
+            draft.unlink()
+
+
+def _check_target(file: Path, draft: Path) -> None:
+    """Raises UserError if a recording cannot be written to `draft` and renamed to `file`."""
     why = ""
     if file.is_dir():
         why = "is a folder; legal: FILE.rrd"
@@ -111,7 +134,7 @@ def _check_target(file: Path) -> None:
         why = f"there is no folder {file.parent}; legal: FILE.rrd in a folder that exists"
     if not why:
         try:
-            file.open("ab").close()
+            draft.open("wb").close()
         except OSError as error:
             why = f"cannot be written: {error.strerror}; legal: a file that can be written"
     if why:
@@ -122,14 +145,15 @@ def save(folder: Path, file: Path, say: Say) -> None:
     """Writes what serve() would show to a recording, which `rerun FILE.rrd` opens.
 
     If a process works on the run, follows it to its end, or until a signal. Says so if the run was
-    not finished. Raises UserError for bad input.
+    not finished. Raises UserError for bad input, RunError if the recording cannot be written whole.
     """
     with (
+        _draft(file) as draft,
         contextlib.closing(Session(folder, say)) as session,
         Interrupts() as interrupts,
     ):
-        _check_target(file)
-        session.recording.save(file)
+        _check_target(file, draft)
+        session.recording.save(draft)
         follow = session.is_going_on()
         session.begin(follow=follow)
         while follow and session.is_going_on() and not interrupts.requested():

@@ -9,8 +9,10 @@ to contact anything but this machine.
 
 from __future__ import annotations
 
+import http.client
 import re
 import socket
+import sys
 import threading
 import urllib.error
 import urllib.parse
@@ -98,6 +100,13 @@ def is_open(port: int) -> bool:
         return probe.connect_ex((HOST, port)) == 0
 
 
+class _Server(ThreadingHTTPServer):
+    def handle_error(self, request: object, client_address: object) -> None:
+        """Reports an error, but for connections that end early: a tab was closed."""
+        if not isinstance(sys.exc_info()[1], OSError):
+            super().handle_error(request, client_address)  # type: ignore[arg-type]
+
+
 class WebPage:
     """A context manager that serves the page on `port`, by threads."""
 
@@ -111,7 +120,7 @@ class WebPage:
             def log_message(self, format: str, *args: object) -> None:
                 pass
 
-        self._server = ThreadingHTTPServer((HOST, port), Handler)
+        self._server = _Server((HOST, port), Handler)
         self._thread = threading.Thread(target=self._server.serve_forever, daemon=True)
 
     def __enter__(self) -> WebPage:
@@ -133,7 +142,7 @@ def _answer(request: BaseHTTPRequestHandler, data_port: int, asset_port: int) ->
     if request.headers.get("Host", "").partition(":")[0] not in (HOST, "localhost"):
         request.send_error(403)  # a page elsewhere whose name leads here
         return
-    path = urllib.parse.urlsplit(request.path).path
+    path = urllib.parse.quote(request.path.partition("?")[0], safe="/%")
     if not path.startswith("/"):
         request.send_error(400)
         return
@@ -143,7 +152,7 @@ def _answer(request: BaseHTTPRequestHandler, data_port: int, asset_port: int) ->
     except urllib.error.HTTPError as error:
         request.send_error(error.code)
         return
-    except urllib.error.URLError:
+    except (OSError, http.client.HTTPException):
         request.send_error(502)  # the viewer has ended
         return
     if path == "/":
