@@ -300,11 +300,12 @@ def test_curves_without_costs_are_named(folder, tmp_path):
     assert_named_and_report_stays(runs, path, "lacks columns; legal: ")
 
 
-def test_a_summary_of_another_kind_is_named(folder, tmp_path):
+@pytest.mark.parametrize("name", ["replays", "interactions", "trees", "pushing_iterations_p90"])
+def test_a_summary_of_another_kind_is_named(folder, tmp_path, name):
     runs = tmp_path / "runs"
     shutil.copytree(folder, runs)
     path = runs / CELLS[0].name / "summary.json"
-    write_json(path, {**json.loads(path.read_text()), "replays": "many"})
+    write_json(path, {**json.loads(path.read_text()), name: "many"})
     assert_named_and_report_stays(runs, path, "other fields than it should")
 
 

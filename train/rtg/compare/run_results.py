@@ -16,7 +16,7 @@ from rtg.compare.estimates import first_reach
 from rtg.compare.methods import METHODS, TASKS
 from rtg.errors import UserError, fields_of
 from rtg.files import versions
-from rtg.files.run_folder import read_json, result
+from rtg.files.run_folder import SUMMARY_KEYS, read_json, result
 from rtg.run import effective_config
 from rtg.run.results import learning_curve
 
@@ -25,6 +25,9 @@ Floats = NDArray[np.float64]
 COSTS = ("interactions", "pushes", "cpu_s")  # [1], [1], [s]; columns of a curve
 THRESHOLD = 0.95  # greedy success that solves a task; the costs "..._to_95" are those to reach it
 CURVE_COLUMNS = ("success_rate", "rollout_success", "episode_length_mean", "episode_return_mean")
+
+_TEXTS = ("task", "method", "mode")  # of a summary; its other members are numbers
+_ITERATIONS = ("pushing_iterations_median", "pushing_iterations_p90")
 
 
 def costs(curve: dict[str, Floats], cost: str) -> list[float]:
@@ -155,12 +158,21 @@ def _result(run: Path, cell: Cell, failures: Container[str]) -> RunResult:
     summary = result(run)
     if summary:
         with fields_of(run / "summary.json"):
+            _check_figures(summary)
             curve = _curve(run / "progress.csv", summary)
         made_with = read_json(run / versions.FILE)
         train = effective_config.load_recorded(run / "config.yaml").train
         return RunResult(cell, run, "done", summary, made_with, curve, train)
     state = "failed" if cell.name in failures else _state_without_result(run)
     return RunResult(cell, run, state, {}, {}, {}, None)
+
+
+def _check_figures(summary: Mapping[str, Any]) -> None:
+    """Raises TypeError if a figure of a summary is no number, nor absent."""
+    for name in (*SUMMARY_KEYS, *_ITERATIONS):
+        value = summary.get(name)
+        if name not in _TEXTS and not isinstance(value, int | float | None):
+            raise TypeError(f"{name} is {value!r}")
 
 
 def _state_without_result(run: Path) -> str:

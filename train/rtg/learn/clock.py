@@ -47,7 +47,7 @@ class Clock:
 
     def restore(self, seconds: Mapping[str, float]) -> None:
         """Continues from the times that seconds() returned earlier."""
-        self._elapsed = (seconds["wall_s"], seconds["cpu_s"])
+        self._elapsed = (float(seconds["wall_s"]), float(seconds["cpu_s"]))
 
     def _now(self) -> tuple[float, float]:
         return time.monotonic(), self._cpu()

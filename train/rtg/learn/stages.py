@@ -58,4 +58,4 @@ class Stages:
     def restore(self, seconds: Mapping[str, Mapping[str, float]]) -> None:
         """Continues from the times that seconds() returned earlier."""
         for name, one in self._watches.items():
-            one.wall_s, one.cpu_s = seconds[name]["wall_s"], seconds[name]["cpu_s"]
+            one.wall_s, one.cpu_s = float(seconds[name]["wall_s"]), float(seconds[name]["cpu_s"])
