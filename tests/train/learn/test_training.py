@@ -1,6 +1,7 @@
 """The trainer on a small set of true transitions: what it leaves; resuming changes nothing."""
 
 import csv
+import functools
 import json
 import os
 import signal
@@ -74,6 +75,38 @@ def test_a_resumed_run_ends_with_the_same_bits(tmp_path: Path, rows: Rows, cut: 
     assert len(ends[0]) > 50 and ends[0] == ends[1]
     files = [(tmp_path / name / "transitions.npz").read_bytes() for name in ("whole", "cut")]
     assert files[0] == files[1]
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("model.stages.acting.cpu_s", "x"),
+        ("seconds.wall_s", None),
+        ("env.steps", "x"),
+        ("env.steps", [0]),
+        ("env.poses", [[0.0]]),
+        ("env.starts", "x"),
+        ("env.origins", [0, "x"]),
+        ("env.curriculum", "x"),
+        ("env.curriculum.pool", "x"),
+        ("env.curriculum.tries", [1]),
+        ("env.curriculum.first", None),
+        ("env.curriculum.drawn", "x"),
+    ],
+)
+def test_a_checkpoint_with_wrong_fields_is_named(
+    path: str, value: object, tmp_path: Path, rows: Rows
+) -> None:
+    folder = run_folder(tmp_path / "run", None, "train.curriculum=0.5")
+    one = training(folder)
+    one.run(Stream(rows, one.data, piece=60), after_polls(5), record=True)
+    file = folder / "checkpoint" / "state.pt"
+    state = checkpoint.read(file)
+    *above, last = path.split(".")
+    functools.reduce(dict.__getitem__, above, state)[last] = value
+    checkpoint.write(file, state)
+    with pytest.raises(UserError, match=f"^{file}: has other fields than it should"):
+        training(folder).restore()
 
 
 def test_transitions_file_holds_the_stream_in_order(tmp_path: Path, rows: Rows) -> None:

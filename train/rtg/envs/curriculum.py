@@ -178,12 +178,17 @@ class Curriculum:
         }
 
     def restore(self, state: dict[str, Any]) -> None:
+        """Continues from state(). Raises an error if it is none."""
         self._rng.bit_generator.state = state["rng"]
-        self._walk_starts, self._good = np.asarray(state["seeds"]), np.asarray(state["good"])
-        pool, new = np.asarray(state["pool"]), state["new"]
+        seeds, good, pool = (
+            np.asarray(state[name], float).reshape(-1, self._task.bodies, 3)
+            for name in ("seeds", "good", "pool")
+        )
+        self._walk_starts, self._good, new = seeds, good, int(state["new"])
         self._set_pool(pool[:new], pool[new:])
-        self._tries = np.asarray(state["tries"]).copy()
-        self._wins = np.asarray(state["wins"]).copy()
-        self._lengths = np.asarray(state["lengths"]).copy()
-        self._first_number, self._drawn = state["first"], state["drawn"]
-        self.pushes = state["pushes"]
+        self._tries, self._wins, self._lengths = (
+            np.asarray(state[name], np.int64).reshape(len(pool)).copy()
+            for name in ("tries", "wins", "lengths")
+        )
+        self._first_number, self._drawn = int(state["first"]), int(state["drawn"])
+        self.pushes = int(state["pushes"])

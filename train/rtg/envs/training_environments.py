@@ -28,6 +28,14 @@ class Step(NamedTuple):
     episodes: list[tuple[bool, int]]
 
 
+def _of_shape(known: NDArray[Any], found: Any) -> NDArray[Any]:
+    """Returns a copy of `found` with the type of `known`. Raises ValueError for another shape."""
+    array = np.asarray(found, known.dtype).copy()
+    if array.shape != known.shape:
+        raise ValueError(f"shape {list(array.shape)}, not {list(known.shape)}")
+    return array
+
+
 class TrainingEnvironments:
     """A vector of `count` environments like PushEnv.
 
@@ -115,10 +123,10 @@ class TrainingEnvironments:
         }
 
     def restore(self, state: dict[str, Any]) -> None:
-        self._poses = np.asarray(state["poses"]).copy()
-        self._steps = np.asarray(state["steps"]).copy()
-        self._starts = state["starts"]
-        self.successes = state["successes"]
-        self._start_numbers = list(state["origins"])
+        """Continues from state(). Raises an error if it is that of other environments."""
+        self._poses = _of_shape(self._poses, state["poses"])
+        self._steps = _of_shape(self._steps, state["steps"])
+        self._starts, self.successes = int(state["starts"]), int(state["successes"])
+        self._start_numbers = _of_shape(np.array(self._start_numbers), state["origins"]).tolist()
         if self.curriculum:
             self.curriculum.restore(state["curriculum"])
