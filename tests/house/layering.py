@@ -89,7 +89,7 @@ ROOMS = {
     "run": {"files", "processes", "bus", "pictures", "learn"},
     "compare": {"files", "processes", "pictures", "learn", "run"},
     "view": {"files", "processes", "bus", "pictures", "run"},
-    "export": {"files", "pictures", "envs", "run"},
+    "export": {"files", "processes", "pictures", "envs", "run"},
 }
 ROOF = {"arguments", "errors", "extras", "paths", "task_config", "_core"}  # modules of rtg itself
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import multiprocessing
 import os
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import extras
-from rtg.errors import UserError
+from rtg.errors import RunError, UserError
 from rtg.export import run_data, target
 from rtg.export.environment import environment_of
 from rtg.export.run_data import RunData
+from rtg.files import whole_files
 from rtg.files.episodes import Episode
 from rtg.files.run_folder import write_errors_as_user_errors
+from rtg.processes.children import die_with
 
 _KINDS = {
     "plans": "whole episodes: plans found in the data, replayed in the simulator from their first "
@@ -133,7 +137,37 @@ def _create(data: RunData, kind: str, id: str, buffers: Sequence[Any]) -> None:
             "`import rtg` before recover_environment().",
         )
     made.storage.update_metadata(_metadata(data, kind, buffers))
-    return made
+
+
+def _report(work: Callable[[], object], parent: int, result: Connection) -> None:
+    """Does `work` and sends the error that it raises, or None. Says nothing else."""
+    die_with(parent)()
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    try:
+        work()
+        result.send(None)
+    except Exception as error:
+        result.send(error)
+
+
+def _in_child(work: Callable[[], object], path: Path) -> None:
+    """Does `work`, which writes `path`, in a child process, and raises its error.
+
+    HDF5 ends a process in which it cannot write what it still holds: that is a RunError.
+    """
+    context = multiprocessing.get_context("fork")  # the child has the data already
+    receiver, sender = context.Pipe(duplex=False)
+    child = context.Process(target=_report, args=(work, os.getpid(), sender))
+    child.start()
+    sender.close()
+    try:
+        error = receiver.recv()
+    except EOFError:
+        error = RunError(f"{path}: HDF5 could not write it, and ended its process")
+    child.join()
+    if error is not None:
+        whole_files.grow(path.with_name("grown"))  # tells what the machine lacks
+        raise error
 
 
 def write(data: RunData, kind: str, id: str, folder: Path | None, count: int | None) -> str:
@@ -142,7 +176,7 @@ def write(data: RunData, kind: str, id: str, folder: Path | None, count: int | N
     `kind`: "plans" or "transitions". `folder`: that of the data sets; Minari's own if None.
     `count`: at most so many episodes; all if None. Raises UserError if there is nothing to write,
     if there is such a data set already, if it cannot be written or is being written, or if Minari
-    is not installed.
+    is not installed; RunError if the disk is full.
     """
     extras.imported("minari", "minari", "export minari")
     extras.imported("h5py", "minari", "export minari")
@@ -156,8 +190,9 @@ def write(data: RunData, kind: str, id: str, folder: Path | None, count: int | N
             episodes = _episodes(data, kind, count)
             buffers = [_buffer(data, episode, sources) for episode, sources in episodes]
             with target.draft(path) as draft:
+                draft.mkdir()
                 with _datasets_in(draft):
-                    _create(data, kind, id, buffers)
+                    _in_child(lambda: _create(data, kind, id, buffers), draft / "data")
                 _make_group(id)
                 (draft / id).rename(path)
     return f"{id}: {run_data.words(data, [episode for episode, _ in episodes])}\n{path}"

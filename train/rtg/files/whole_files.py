@@ -60,3 +60,12 @@ def read(path: Path) -> bytes:
         if size > _LONGEST:
             raise OSError(errno.EINVAL, f"Is longer than {_LONGEST} bytes", str(path))
         return file.read(size)  # which takes as much memory at once
+
+
+def grow(path: Path) -> None:
+    """Makes a file longer.
+
+    Raises OSError. It tells why a library could not, if that one hides the cause.
+    """
+    with path.open("ab") as file:
+        file.write(bytes(2**20))

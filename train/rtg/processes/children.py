@@ -22,7 +22,7 @@ _SCANT = 1 << 20  # [bytes] of free space, with which a program that needs more 
 _libc = ctypes.CDLL(None)
 
 
-def _die_with(parent: int) -> Callable[[], None]:
+def die_with(parent: int) -> Callable[[], None]:
     """Returns a function that the child process calls before it starts its program.
 
     The kernel then kills the child when the thread that started it ends. `parent`: the id of this
@@ -58,7 +58,7 @@ class Node:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                preexec_fn=_die_with(os.getpid()),
+                preexec_fn=die_with(os.getpid()),
                 pass_fds=descriptors,
             )
 

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from rtg.errors import RunError, StoppedError, UserError, in_words
+from rtg.files import whole_files
 from rtg.processes.children import Node, stop_all
 from rtg.processes.interrupts import Interrupts
 from rtg.view import web_page
@@ -113,8 +114,7 @@ def _draft(file: Path) -> Iterator[Path]:
         draft.replace(file)
     except RuntimeError as error:  # Rerun keeps the cause to itself, but it meets us as well
         try:
-            with draft.open("ab") as end:
-                end.write(bytes(1 << 20))
+            whole_files.grow(draft)
         except OSError as cause:
             raise in_words(cause, file) from None
         raise RunError(f"--save {file}: {error}") from None
