@@ -48,6 +48,21 @@ def test_the_number_of_steps_that_is_asked_for_is_obeyed(steps: int) -> None:
     assert steps_of_an_episode(PushEnv()) == 60
 
 
+@pytest.mark.parametrize(
+    ("ends_at_horizon", "most", "steps"), [(True, 3, 3), (True, 8, 5), (False, 3, 3), (False, 8, 8)]
+)
+def test_make_and_make_vec_end_an_episode_of_ones_own_task_alike(
+    ends_at_horizon: bool, most: int, steps: int
+) -> None:
+    own = {"config": TINY, "settings": ("task.horizon=5",), "ends_at_horizon": ends_at_horizon}
+    env = gymnasium.make("RTG/Task-v0", max_episode_steps=most, **own)
+    assert steps_of_an_episode(env) == steps
+    envs = gymnasium.make_vec("RTG/Task-v0", num_envs=1, max_episode_steps=most, **own)
+    envs.reset(seed=0)
+    ends = [bool(envs.step(np.array([36]))[3][0]) for _ in range(steps)]
+    assert ends == [False] * (steps - 1) + [True]
+
+
 def test_wrappers_that_ask_for_the_number_of_steps_work() -> None:
     env = RecordEpisodeStatistics(TimeAwareObservation(gymnasium.make("RTG/Gathering-v0")))
     assert steps_of_an_episode(env) == 60

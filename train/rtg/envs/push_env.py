@@ -97,8 +97,8 @@ class PushEnv(gymnasium.Env[Any, Any]):
     - `settings`: further ones, each "section.key=value".
     - `jitter`: largest random offset of an object's x and y at the start, in units
       of the task (Task.metre); the task's if None.
-    - `ends_at_horizon`: an episode is truncated after task.horizon actions. Else it has no limit of
-      its own, for `gymnasium.make`, which limits it to `max_episode_steps`.
+    - `ends_at_horizon`: an episode is truncated after task.horizon actions, or before by the
+      `max_episode_steps` of `gymnasium.make`. Else `max_episode_steps` is the only limit.
     - `render_mode`: "rgb_array", or "human", a window that shows each state.
     - `variant`: `observations`, `actions`, `goals` and `pixels`, see Variant.
     - `info` has the keys "poses" [bodies, 3], "is_success" and "rejected".

@@ -26,8 +26,9 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
     """`num_envs` environments like PushEnv, all of which one call of the core steps.
 
     An environment whose episode has ended begins a new one at its next step, which takes no action.
-    `max_episode_steps`: if None, task.horizon with `ends_at_horizon`, else no limit. The rest is as
-    in PushEnv; entries of observations and of `info` are arrays [num_envs, ...].
+    `max_episode_steps`: an episode is truncated after so many, as by `gymnasium.make`; with
+    `ends_at_horizon` after task.horizon at the latest. The rest is as in PushEnv; entries of
+    observations and of `info` are arrays [num_envs, ...].
     """
 
     metadata = {  # noqa: RUF012  (gymnasium's own way)
@@ -56,7 +57,9 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self.jitter = checked_jitter(read, jitter)
         if max_episode_steps is not None and max_episode_steps < 1:
             raise ValueError(f"max_episode_steps {max_episode_steps}; legal: at least 1")
-        self.limit = max_episode_steps or (self.task.horizon if ends_at_horizon else math.inf)
+        self.limit = min(
+            max_episode_steps or math.inf, self.task.horizon if ends_at_horizon else math.inf
+        )
         self.render_mode = render_mode
         self.single_observation_space = self.interface.observation_space
         self.single_action_space = self.interface.action_space
