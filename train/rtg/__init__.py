@@ -68,4 +68,4 @@ def _register(id: str, horizon: int | None, **kwargs: str | bool | None) -> None
 
 for _id, (_task, _horizon) in ENVIRONMENTS.items():
     _register(_id, _horizon, config=_task, ends_at_horizon=False)
-_register("RTG/Task-v0", None, config=None)  # any task, which the user names; it ends at its horizon
+_register("RTG/Task-v0", None, config=None)  # any task, which the user names; its horizon holds

@@ -143,7 +143,22 @@ def test_states_that_are_none_are_refused(poses: np.ndarray, message: str) -> No
     with pytest.raises(ValueError, match=message):
         env.reset(options={"poses": poses})
     with pytest.raises(ValueError, match=message):
-        env.set_state({"poses": poses, "steps": 0})
+        env.set_state({"poses": poses, "goal": START, "steps": 0})
+
+
+@pytest.mark.parametrize("steps", [-5, 10**30, 2.7, "3", None])
+def test_a_count_of_steps_that_is_none_is_refused_and_changes_nothing(steps: object) -> None:
+    env = PushEnv()
+    env.reset(seed=2)
+    before = env.get_state()
+    with pytest.raises(ValueError, match=r"steps .*; legal: a whole number from 0 to 2\*\*63 - 1"):
+        env.set_state({"poses": START, "goal": START, "steps": steps})
+    np.testing.assert_array_equal(env.get_state()["poses"], before["poses"])
+
+
+def test_a_state_that_lacks_a_part_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"state without \['goal'\]; legal: one of get_state\(\)"):
+        PushEnv().set_state({"poses": START, "steps": 0})
 
 
 def test_info_of_a_reset_has_the_keys_of_a_step() -> None:

@@ -105,7 +105,9 @@ def test_vectors_refuse_what_single_ones_refuse(variant: str, actions: Any, lega
         envs.step(actions)
 
 
-def test_vectors_take_one_seed_and_at_least_one_step() -> None:
+def test_vectors_take_one_seed_and_at_least_one_environment_and_step() -> None:
+    with pytest.raises(ValueError, match="num_envs 0; legal: at least 1"):
+        PushVectorEnv(0)
     with pytest.raises(ValueError, match="seed is a list; legal: one number"):
         PushVectorEnv(2).reset(seed=[1, 2])
     with pytest.raises(ValueError, match="max_episode_steps 0; legal: at least 1"):
@@ -200,6 +202,8 @@ def test_an_image_shows_the_state_and_the_goal_without_the_past() -> None:
         ({"actions": "box"}, "actions 'box'; legal: 'discrete', 'continuous'"),
         ({"goals": "mine"}, "goals 'mine'; legal: 'task', 'drawn'"),
         ({"pixels": 4}, "pixels 4; legal: 8 to 2048"),
+        ({"pixels": "96"}, "pixels '96'; legal: 8 to 2048"),
+        ({"goal": "drawn"}, r"unknown keywords \['goal'\]; legal: .*config, .*jitter, .*goals"),
         ({"render_mode": "ansi"}, "render_mode 'ansi'; legal: None, 'rgb_array'"),
     ],
 )

@@ -70,7 +70,7 @@ def test_the_data_of_another_run_are_learned_from(file, tmp_path):
 def test_a_run_without_transitions_is_refused_and_leaves_nothing(tmp_path, capsys):
     (tmp_path / "config.yaml").touch()
     said = refused(capsys, TINY, "--out", tmp_path / "run", "--data", tmp_path)
-    assert f"--data {tmp_path}: no such file or data set; legal: " in said
+    assert f"--data {tmp_path}: holds no transitions; legal: " in said
     assert not (tmp_path / "run").exists()
 
 

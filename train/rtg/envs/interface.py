@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable, Mapping
+from numbers import Integral
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -46,8 +49,20 @@ class Variant(NamedTuple):
             if getattr(self, name) not in get_args(kind):
                 words = ", ".join(repr(word) for word in get_args(kind))
                 raise ValueError(f"{name} {getattr(self, name)!r}; legal: {words}")
-        if not 8 <= self.pixels <= 2048:
-            raise ValueError(f"pixels {self.pixels}; legal: 8 to 2048")
+        if not (isinstance(self.pixels, Integral) and 8 <= self.pixels <= 2048):
+            raise ValueError(f"pixels {self.pixels!r}; legal: 8 to 2048")
+
+
+def variant_of(made: Callable[..., Any], given: Mapping[str, Any]) -> Variant:
+    """Returns the variant that the further keywords of the environment `made` ask for.
+
+    Raises ValueError for unknown ones.
+    """
+    if unknown := sorted(given.keys() - set(Variant._fields)):
+        own = [name for name in inspect.signature(made).parameters if name != "variant"]
+        legal = ", ".join([*own, *Variant._fields])
+        raise ValueError(f"unknown keywords {unknown}; legal: {legal}")
+    return Variant(**given)
 
 
 class _Outline(NamedTuple):

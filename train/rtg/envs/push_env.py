@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from numbers import Integral
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
 from rtg.arguments import checked
-from rtg.envs.interface import Interface, Variant
+from rtg.envs.interface import Interface, variant_of
 from rtg.envs.layouts import BODY_ENTRY_NAMES
 from rtg.envs.window import Window
 from rtg.pictures.draw import objects
@@ -73,6 +74,13 @@ def checked_state(task: _core.Task, poses: Any) -> Floats:
     return state
 
 
+def checked_steps(steps: Any) -> int:
+    """Returns the number of steps of an episode. Raises ValueError for what is none."""
+    if not (isinstance(steps, Integral) and 0 <= int(steps) < 2**63):
+        raise ValueError(f"steps {steps!r}; legal: a whole number from 0 to 2**63 - 1")
+    return int(steps)
+
+
 def check_render_mode(mode: str | None, legal: list[str]) -> None:
     """Raises ValueError for a mode that is none of the `legal` ones, nor None."""
     if mode is not None and mode not in legal:
@@ -124,7 +132,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
     ) -> None:
         check_render_mode(render_mode, self.metadata["render_modes"])
         read = read_config(config, settings)
-        self.interface = Interface(read, Variant(**variant))
+        self.interface = Interface(read, variant_of(PushEnv, variant))
         self.task = read.task
         self.jitter = checked_jitter(read, jitter)
         self.ends_at_horizon = ends_at_horizon
@@ -195,12 +203,15 @@ class PushEnv(gymnasium.Env[Any, Any]):
     def set_state(self, state: dict[str, Any]) -> Any:
         """Goes on from a state of get_state(), to the bit, and returns its observation.
 
-        Raises ValueError for poses that are not legal. A wrapper that counts steps, as
-        `gymnasium.make` adds one, keeps its own count.
+        Raises ValueError for a state that is not legal, and changes nothing then. A wrapper that
+        counts steps, as `gymnasium.make` adds one, keeps its own count.
         """
-        self._path = [checked_state(self.task, state["poses"])]
-        self._goal = checked_state(self.task, state["goal"])
-        self._steps = int(state["steps"])
+        if missing := {"poses", "goal", "steps"} - state.keys():
+            raise ValueError(f"state without {sorted(missing)}; legal: one of get_state()")
+        poses = checked_state(self.task, state["poses"])
+        goal = checked_state(self.task, state["goal"])
+        self._steps = checked_steps(state["steps"])
+        self._path, self._goal = [poses], goal
         return self._seen(rejected=False)[0]
 
     def render(self) -> NDArray[np.uint8] | None:

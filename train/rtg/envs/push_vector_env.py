@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rtg import _core
 from rtg.arguments import checked
-from rtg.envs.interface import Interface, Variant
+from rtg.envs.interface import Interface, variant_of
 from rtg.envs.push_env import RENDERED_PIXELS, check_render_mode, checked_jitter
 from rtg.task_config import read_config
 
@@ -50,8 +50,10 @@ class PushVectorEnv(gymnasium.vector.VectorEnv[Any, Any, Any]):
         **variant: Any,
     ) -> None:
         check_render_mode(render_mode, self.metadata["render_modes"])
+        if num_envs < 1:
+            raise ValueError(f"num_envs {num_envs}; legal: at least 1")
         read = read_config(config, settings)
-        self.interface = Interface(read, Variant(**variant))
+        self.interface = Interface(read, variant_of(PushVectorEnv, variant))
         self.task = read.task
         self.num_envs = num_envs
         self.jitter = checked_jitter(read, jitter)

@@ -125,8 +125,9 @@ def _read_own_data(word: str, task: _core.Task) -> OwnData:
         return own_data.read(file, task)
     folder = minari_data.folder_of(word)
     if folder is None:
+        wrong = "holds no transitions" if Path(word).exists() else "no such file or data set"
         raise UserError(
-            f"--data {word}: no such file or data set; legal: a .npz with states, actions and "
+            f"--data {word}: {wrong}; legal: a .npz with states, actions and "
             "next_states, a run that has its transitions, or the id or folder of a Minari data set "
             "(docs/data.md)"
         )
