@@ -16,6 +16,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -33,6 +34,7 @@ from rtg.files import run_folder
 
 HERE = Path(__file__).resolve().parent
 RATE = 5000  # messages of strangers [1/s]
+FORGED, MALFORMED = 10**5, 10**6  # that they send beside training, in the long form
 
 
 class Report:
@@ -41,6 +43,13 @@ class Report:
     def __init__(self, smoke: bool) -> None:
         self._smoke = smoke
         self.holds = True
+
+    def least(self, name: str, value: float, bar: float) -> None:
+        """Demands in the long form that a measured value is at least `bar`."""
+        if self._smoke:
+            print(f"chaos.{name}: {value:.3g}")
+        else:
+            self.holds &= gate(f"chaos.{name}", value, ">=", bar)
 
     def zero(self, name: str, count: int) -> None:
         """Demands that nothing of a kind has happened."""
@@ -111,16 +120,21 @@ class Chaos:
     def pauses(self) -> None:
         """Programs that freeze for a while: all of them in each run, at random times."""
         rounds, rng = 1 if self._smoke else 10, random.Random(1)
+        names = [*generation.PROGRAMS, generation.CONSUMER]
         for seconds in (2.6,) if self._smoke else (2.6, 40.0):
+            strikes: Counter[str] = Counter()
 
-            def freeze(run: Generation, seconds: float = seconds) -> None:
+            def freeze(
+                run: Generation, seconds: float = seconds, strikes: Counter[str] = strikes
+            ) -> None:
                 def later(name: str, delay: float) -> None:
                     time.sleep(delay)
-                    run.pause(name, seconds)
+                    strikes[name] += run.pause(name, seconds)
 
+                # A generation takes about 4 s: later pauses would meet programs that have ended.
                 threads = [
-                    threading.Thread(target=later, args=(name, rng.uniform(0.3, 2 * seconds)))
-                    for name in [*generation.PROGRAMS, generation.CONSUMER]
+                    threading.Thread(target=later, args=(name, rng.uniform(0.3, 3.0)))
+                    for name in names
                 ]
                 for thread in threads:
                     thread.start()
@@ -129,6 +143,10 @@ class Chaos:
 
             ends = [disturbed(freeze) for _ in range(rounds)]
             self.report.same(f"pauses_of_{seconds:g}_s", ends, self._rows)
+            words = ", ".join(f"{name} {strikes[name]}" for name in names)
+            print(f"chaos.pauses_of_{seconds:g}_s: {words} times")
+            missed = sum(strikes[name] == 0 for name in names)
+            self.report.zero(f"pauses_of_{seconds:g}_s.programs_missed", missed)
 
     def commands(self) -> None:
         """Kills of the trainer, and of the command with all its programs; --resume goes on."""
@@ -159,8 +177,9 @@ class Chaos:
             seconds,
             lambda graph: {"coordinator": graph.coordinator(), "consumer": graph.consumer()},
         )
-        sent, wrong, end = 0, 0, time.monotonic() + (1.0 if self._smoke else 220.0)
-        while time.monotonic() < end:
+        forged, malformed, wrong, unheard = 0, 0, 0, 0
+        end = time.monotonic() + (1.0 if self._smoke else 900.0)
+        while time.monotonic() < end and (forged < FORGED or malformed < MALFORMED):
             with network.Network() as net, tempfile.TemporaryDirectory() as folder:
                 run = Command(net, Path(folder) / "run")
                 run.start()
@@ -169,9 +188,13 @@ class Chaos:
                 name = run_folder.run_name(run.folder)
                 with _strangers(net, name) as counts:
                     run.end()
-                sent += counts[0]
+                forged, malformed = forged + counts[0], malformed + counts[1]
+                heard = run_folder.result(run.folder)["counters"]
+                unheard += not (heard.get("bus.forged") and heard.get("bus.malformed"))
                 wrong += run.transitions() != self._rows_of_command
-        print(f"chaos.strangers: {sent} messages beside training")
+        self.report.least("strangers.forged", forged, FORGED)
+        self.report.least("strangers.malformed", malformed, MALFORMED)
+        self.report.zero("strangers.unheard", unheard)
         self.report.zero("strangers.wrong", wrong)
 
     def _burden(self, seconds: float, start: Callable[[Graph], dict[str, Process]]) -> None:
@@ -182,9 +205,11 @@ class Chaos:
             time.sleep(3.0)
             before = {name: resident(program.pid) for name, program in programs.items()}
             idle = _cpu_of(programs, seconds)
-            with _strangers(net, RUN):
+            with _strangers(net, RUN) as counts:
                 time.sleep(0.5)
                 busy = _cpu_of(programs, seconds)
+            name = "_and_".join(programs)
+            self.report.least(f"strangers.rate_at_{name}", sum(counts) / seconds, 0.9 * RATE)
             for name, program in programs.items():
                 if program.poll() is not None:
                     raise SystemExit(f"the {name} has ended")
@@ -262,7 +287,10 @@ def _cpu_of(programs: dict[str, Process], seconds: float) -> dict[str, float]:
 
 @contextmanager
 def _strangers(net: network.Network, name: str) -> Iterator[list[int]]:
-    """Lets strangers to run `name` send. The list has at the end how many messages these were."""
+    """Lets strangers to run `name` send.
+
+    The list has at the end how many messages were forged, and how many malformed.
+    """
     words = [sys.executable, HERE / "stranger.py", command.TINY, name, str(RATE)]
     stranger = net.start(words, PYTHONPATH=str(paths.ROOT / "train"))
     assert stranger.stdout is not None and stranger.stdout.readline() == "sends\n"
@@ -271,7 +299,7 @@ def _strangers(net: network.Network, name: str) -> Iterator[list[int]]:
         yield counts
     finally:
         stranger.terminate()
-        counts.append(int(stranger.communicate()[0]))
+        counts += map(int, stranger.communicate()[0].split())
 
 
 def _survives_a_full_disk(kilobytes: int, mode: list[str], right: bytes) -> bool:

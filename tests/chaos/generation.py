@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import subprocess
 import tempfile
 import time
@@ -12,6 +11,7 @@ from typing import NamedTuple
 
 from graph import Graph, generated_in_process, lost
 from network import Network
+from processes import freeze
 
 SETTINGS = ("search.transitions=12000", "run.seed=3")
 WORKERS = ("worker 0", "worker 1")
@@ -50,12 +50,9 @@ class Generation:
         self._programs[name].wait()
         self._programs[name] = self._start[name]()
 
-    def pause(self, name: str, seconds: float) -> None:
-        """Freezes a program, or the consumer, for so long."""
-        program = {**self._programs, CONSUMER: self._consumer}[name]
-        program.send_signal(signal.SIGSTOP)
-        time.sleep(seconds)
-        program.send_signal(signal.SIGCONT)
+    def pause(self, name: str, seconds: float) -> bool:
+        """Freezes a program, or the consumer, for so long. Returns whether it was running."""
+        return freeze({**self._programs, CONSUMER: self._consumer}[name], seconds)
 
     def end(self) -> End:
         """Waits for the end. Raises SystemExit if a program failed or units were given up."""

@@ -1,8 +1,11 @@
-"""What processes use, from /proc."""
+"""What processes use, from /proc, and pauses of them."""
 
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
+import time
 from pathlib import Path
 
 _TICKS = os.sysconf("SC_CLK_TCK")
@@ -18,3 +21,13 @@ def cpu_seconds(pid: int) -> float:
 def resident(pid: int | str = "self") -> float:
     """Returns the resident memory of a process [MB]."""
     return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE / 1e6
+
+
+def freeze(process: subprocess.Popen[str], seconds: float) -> bool:
+    """Stops a process for so long. Returns whether there was one: it may have ended before."""
+    if process.poll() is not None:
+        return False
+    process.send_signal(signal.SIGSTOP)
+    time.sleep(seconds)
+    process.send_signal(signal.SIGCONT)
+    return True

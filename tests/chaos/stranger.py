@@ -2,7 +2,7 @@
 
 Half of it are forged messages of all types: the run's name, the right channel and type, another
 key. The other half are datagrams that are no messages. Prints that it sends, and at SIGTERM how
-many these were.
+many of each these were.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def main(config: str, name: str, rate: float) -> None:
             else:
                 raw.sendto(malformed(rng), (group, int(port)))
             sent += 1
-    print(sent)
+    print(sent // 2, sent - sent // 2)
 
 
 if __name__ == "__main__":
