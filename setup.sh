@@ -90,13 +90,13 @@ setup_packages() {
 
 find_python() {
   local python
-  for python in python3 python3.11 python3.12 python3.13; do
-    if "$python" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null; then
+  for python in python3 python3.11 python3.12 python3.13 python3.14; do
+    if "$python" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 15))' 2>/dev/null; then
       command -v "$python"
       return
     fi
   done
-  fail "no Python 3.11, 3.12 or 3.13 found. Debian 12 and Ubuntu 24.04 have one: apt-get install python3"
+  fail "no Python 3.11 to 3.14 found. Debian 12 and Ubuntu 24.04 have one: apt-get install python3"
 }
 
 pip_install() {

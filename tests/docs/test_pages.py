@@ -179,6 +179,10 @@ def test_test_sh_takes_what_the_pages_say() -> None:
     legal = set(re.findall(r"^#   \./test\.sh (\w+)", text, re.MULTILINE))
     named = {word for _, words in of("./test.sh") for word in words if not word.startswith("--")}
     assert named <= legal and named
+    listed = re.search(
+        r"\./test\.sh \[([\w |]+)\]", (paths.ROOT / "docs" / "command_line.md").read_text()
+    )
+    assert listed is not None and set(listed[1].split(" | ")) == legal
 
 
 def test_modules_and_programs_exist() -> None:

@@ -15,6 +15,7 @@ from rtg.envs.push_env import PushEnv
 
 
 def test_a_window_shows_each_state(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pygame", reason="there is no wheel for this version of Python")
     shown: list[np.ndarray] = []
 
     class Shown(window.Window):
