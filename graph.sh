@@ -26,7 +26,10 @@ journal=$folder/generation.journal journaled=0 # its size when the coordinator l
 program() { # NAME: becomes that program; by hand they can be started in any order
   local be=(exec setsid setpriv --pdeathsig KILL) # out of the terminal's reach, but not longer than this script
   case $1 in
-    forward_sim_server) "${be[@]}" "$nodes/rtg_forward_sim_server" "$config" "$key" ;;
+    forward_sim_server)
+      if grep -qE '^  engine: (box2d|newton) ' "$config"; then "${be[@]}" "$nodes/rtg_forward_sim_server" "$config" "$key"; fi
+      "${be[@]}" "$python" -m rtg.engines.server "$config" "$key"
+      ;;
     reverse_worker_*) "${be[@]}" "$nodes/rtg_reverse_worker" "$config" "$key" "${1##*_}" ;;
     beam_coordinator) "${be[@]}" "$nodes/rtg_beam_coordinator" "$config" "$key" "$folder" ;;
     trainer) "${be[@]}" "$python" -m rtg.learn.trainer "$folder" "${flags[@]}" ;;
@@ -63,7 +66,7 @@ died_soon() { # NAME: whether it has done little since its start
 
 may_start_again() { # NAME STATUS
   case $1:$2 in
-    *:2 | "$consumer":*) false ;;
+    *:2 | *:4 | "$consumer":*) false ;; # bad input, an engine that fails
     beam_coordinator:137) [[ -e $journal ]] ;;
     beam_coordinator:*) false ;;
   esac
@@ -75,7 +78,7 @@ on_failure() { # NAME STATUS
   if died_soon "$1"; then deaths[$1]=$((${deaths[$1]:-0} + 1)); else deaths[$1]=0; fi
   if ! may_start_again "$1" "$2" || ((deaths[$1] == 10)); then
     echo "$1 $how; the end of $logs/$1.log:"
-    tail -n 8 "$logs/$1.log"
+    tail -n 30 "$logs/$1.log"
     stop "$2"
   fi
   if [[ $1 != beam_coordinator ]] && ! is_running beam_coordinator; then return; fi

@@ -1,24 +1,29 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 
 namespace rtg::forward {
 
-/// Implementations of Simulator.
-enum class Engine {
-  kBox2d,   // Box2dSimulator
-  kNewton,  // NewtonSimulator: the model that the reverse simulator inverts
-};
-inline constexpr std::array<std::string_view, 2> kEngines{"box2d", "newton"};
+/// The engines of this library; see make_simulator().
+inline constexpr std::string_view kBox2d = "box2d";  // Box2dSimulator
+inline constexpr std::string_view kNewton =
+    "newton";  // NewtonSimulator: what the reverse simulator inverts
 
 /// Names what a run takes for the true dynamics: of replays, training and evaluation.
 struct ForwardConfig {
-  Engine engine = Engine::kBox2d;
+  /// kBox2d, kNewton, or an engine outside this library, which the caller brings along: "mujoco" or
+  /// "module:Class", a class in Python.
+  std::string engine{kBox2d};
+
+  bool is_built_in() const { return engine == kBox2d || engine == kNewton; }
 
   template <class Visitor>
   void visit(Visitor& v) {
-    v.choice("engine", engine, kEngines, "forward simulator of replays, training and evaluation");
+    v.text("engine", engine,
+           "forward simulator of replays, training and evaluation: box2d, newton, mujoco, or "
+           "module:Class in Python");
   }
 };
 

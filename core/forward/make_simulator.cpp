@@ -1,5 +1,7 @@
 #include "core/forward/make_simulator.hpp"
 
+#include <stdexcept>
+
 #include "core/forward/box2d_simulator.hpp"
 #include "core/forward/newton_simulator.hpp"
 
@@ -8,8 +10,9 @@ namespace rtg::forward {
 std::unique_ptr<const Simulator> make_simulator(const ForwardConfig& config, const Scene& scene,
                                                 const PushConfig& push,
                                                 const PhysicsConfig& physics) {
-  if (config.engine == Engine::kNewton)
-    return std::make_unique<NewtonSimulator>(scene, push, physics);
+  if (!config.is_built_in())
+    throw std::invalid_argument("the engine '" + config.engine + "' is none of this library");
+  if (config.engine == kNewton) return std::make_unique<NewtonSimulator>(scene, push, physics);
   return std::make_unique<Box2dSimulator>(scene, push, physics);
 }
 

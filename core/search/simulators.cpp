@@ -93,12 +93,11 @@ ReplayBatch replay_on_threads(ReplayOne replay, int threads) {
 }
 
 GenerationSeams in_process_seams(const tasks::Task& task, const PhysicsConfig& physics,
-                                 const reverse::ReverseConfig& reverse,
-                                 const forward::ForwardConfig& forward, Generator generator,
-                                 int threads) {
+                                 const reverse::ReverseConfig& reverse, Generator generator,
+                                 int threads, ReplayBatch replay) {
   GenerationSeams seams;
   seams.solve = solve_on_threads(reverse_solver(task, physics, reverse, generator), threads);
-  seams.replay = replay_on_threads(forward_replay(task, physics, forward), threads);
+  seams.replay = std::move(replay);
   seams.paces = paces(task.scene, physics);
   return seams;
 }

@@ -25,12 +25,10 @@ ReplayOne forward_replay(const tasks::Task& task, const PhysicsConfig& physics,
 SolveBatch solve_on_threads(SolveBatch solve, int threads);
 ReplayBatch replay_on_threads(ReplayOne replay, int threads);
 
-/// Returns seams with the paces of the task, whose `solve` and `replay` are reverse_solver() and
-/// forward_replay() on `threads` threads of this process. The caller sets `store`, and may set
-/// `progress` and `cancelled`.
+/// Returns seams with the paces of the task, whose `solve` is reverse_solver() on `threads` threads
+/// of this process. The caller sets `store`, and may set `progress` and `cancelled`.
 GenerationSeams in_process_seams(const tasks::Task& task, const PhysicsConfig& physics,
-                                 const reverse::ReverseConfig& reverse,
-                                 const forward::ForwardConfig& forward, Generator generator,
-                                 int threads);
+                                 const reverse::ReverseConfig& reverse, Generator generator,
+                                 int threads, ReplayBatch replay);
 
 }  // namespace rtg::search

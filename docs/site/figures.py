@@ -18,7 +18,8 @@ from PIL import Image
 from rtg import cli
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
-EXAMPLES = sorted(module.name for module in pkgutil.iter_modules(rtg.examples.__path__))
+_MODULES = (module.name for module in pkgutil.iter_modules(rtg.examples.__path__))
+EXAMPLES = sorted(name for name in _MODULES if name[0].isdigit())
 OF_A_RUN = ("coverage", "replay_gap", "episode")
 _COLOURS = 256  # of a palette, so that files are small
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -16,6 +17,7 @@
 #include "nodes/config/method.hpp"
 #include "nodes/config/run_checks.hpp"
 #include "nodes/config/start_checks.hpp"
+#include "nodes/config/suggestion.hpp"
 #include "nodes/config/task_section.hpp"
 #include "nodes/config/train_preset.hpp"
 #include "nodes/config/yaml_parser.hpp"
@@ -184,6 +186,16 @@ void check_bus(const ConfigNode& root, const std::string& url) {
   }
 }
 
+/// Throws ConfigError unless `engine` is the name of an engine or of a class in Python.
+void check_engine(const ConfigNode& root, const std::string& engine) {
+  static const std::vector<std::string> names{"box2d", "newton", "mujoco"};
+  static const std::regex python(R"(\w+(\.\w+)*:[A-Za-z_]\w*)");
+  if (std::ranges::count(names, engine) > 0 || std::regex_match(engine, python)) return;
+  throw ConfigError(find(root, "forward", "engine")->value.origin, "forward.engine",
+                    '\'' + engine + "' is no engine" + suggestion(engine, names),
+                    listed(names) + ", or module:Class, a class in Python");
+}
+
 ConfigNode tree_of(const Config& config) {
   ConfigNode root = map_node();
   root.entries.push_back({"task", "", task_node(config.task)});
@@ -237,6 +249,7 @@ Config read_config(const ConfigNode& root) {
   check_randomisation(root, config);
   check_jitters(config, root);
   check_bus(root, config.run.bus);
+  check_engine(root, config.forward.engine);
   check_run(config, root);
   if (config.run.workers == 0)
     config.run.workers = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 1024);

@@ -42,7 +42,8 @@ void beam(benchmark::State& state, const Size& size) {
   search::SearchConfig config;
   config.breadth = size.breadth;
   search::GenerationSeams seams =
-      search::in_process_seams(task, {}, {}, {}, search::Generator::kRrbs, size.threads);
+      search::in_process_seams(task, {}, {}, search::Generator::kRrbs, size.threads,
+                               replay_on_threads(search::forward_replay(task, {}), size.threads));
   double simulating = 0.0;
   seams.solve = [&simulating, solve = seams.solve](std::span<const reverse::ReverseJob> jobs) {
     const Clock clock(simulating);

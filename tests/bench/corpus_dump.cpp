@@ -57,7 +57,8 @@ void dump(const std::filesystem::path& folder, int transitions) {
     search::SearchConfig search;
     search.transitions = transitions;
     Sample sample(task);
-    search::GenerationSeams seams = search::in_process_seams(task, {}, {}, {}, search.generator, 2);
+    search::GenerationSeams seams = search::in_process_seams(
+        task, {}, {}, search.generator, 2, replay_on_threads(search::forward_replay(task, {}), 2));
     seams.solve = [&sample, solve = seams.solve](std::span<const reverse::ReverseJob> jobs) {
       for (const reverse::ReverseJob& job : jobs) sample.add(job);
       return solve(jobs);

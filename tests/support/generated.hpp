@@ -14,9 +14,10 @@ namespace rtg::testing {
 inline search::GenerationReport generated(
     const config::Config& config, std::uint64_t seed, int threads,
     std::function<void(const search::Progress&)> progress = [](const search::Progress&) {}) {
-  search::GenerationSeams seams =
-      search::in_process_seams(config.task, config.physics, config.reverse, config.forward,
-                               config.search.generator, threads);
+  search::GenerationSeams seams = search::in_process_seams(
+      config.task, config.physics, config.reverse, config.search.generator, threads,
+      replay_on_threads(search::forward_replay(config.task, config.physics, config.forward),
+                        threads));
   beam_coordinator::RowDigest digest;
   seams.store = [&digest](std::span<const search::Transition> rows) { digest.add(rows); };
   seams.progress = std::move(progress);

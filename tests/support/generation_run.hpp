@@ -17,7 +17,8 @@ struct GenerationRun {
 /// The in-process seams over the reverse steps of a generator.
 inline search::GenerationSeams seams_of(const tasks::Task& task, search::Generator generator,
                                         int threads) {
-  return search::in_process_seams(task, {}, {}, {}, generator, threads);
+  return search::in_process_seams(task, {}, {}, generator, threads,
+                                  replay_on_threads(search::forward_replay(task, {}), threads));
 }
 
 inline search::GenerationSeams naive_seams(const tasks::Task& task, int threads) {

@@ -28,11 +28,11 @@ Process = subprocess.Popen[str]
 class Graph:
     """The programs of one run; `overrides` as in --set."""
 
-    def __init__(self, network: Network, folder: Path, *overrides: str) -> None:
+    def __init__(self, network: Network, folder: Path, *overrides: str, task: Path = _TINY) -> None:
         self.network, self.folder = network, folder
         self.config = folder / "config.yaml"
         given = [Override("", setting) for setting in overrides]
-        self.config.write_text(effective_config.load(_TINY, given).yaml)
+        self.config.write_text(effective_config.load(task, given).yaml)
         self.key = folder / KEY_FILE
         new_key(self.key, RUN)
         self.journal = folder / JOURNAL_FILE

@@ -45,8 +45,11 @@ void bind_config(nb::module_& module) {
   bind_section<PhysicsConfig>(
       module, "PhysicsConfig",
       "The section `physics`. The physics that reverse solver and simulators share.");
-  bind_section<forward::ForwardConfig>(
+  nb::class_<forward::ForwardConfig> forward(
       module, "ForwardConfig", "The section `forward`. The simulator of the true dynamics.");
+  bind_fields(forward);
+  forward.def_prop_ro("is_built_in", &forward::ForwardConfig::is_built_in,
+                      "Whether the core has the engine; else Python brings it along.");
   bind_section<reverse::ReverseConfig>(module, "ReverseConfig",
                                        "The section `reverse`. The reverse solver.");
   bind_section<search::SearchConfig>(

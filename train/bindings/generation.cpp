@@ -16,6 +16,7 @@
 #include "nodes/jobs/journaled.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
+#include "train/bindings/engine.hpp"
 #include "train/bindings/fields.hpp"
 #include "train/bindings/transition_arrays.hpp"
 
@@ -47,11 +48,12 @@ void report_progress(const nb::object& progress, const search::Progress& p) {
 /// file `journal` cannot be used.
 std::string generate_in_process(const config::Config& config, const nb::object& store,
                                 const nb::object& progress,
-                                const std::optional<std::filesystem::path>& journal) {
+                                const std::optional<std::filesystem::path>& journal,
+                                const nb::object& engine) {
   const nb::gil_scoped_release release;
   search::GenerationSeams seams =
-      search::in_process_seams(config.task, config.physics, config.reverse, config.forward,
-                               config.search.generator, config.run.workers);
+      search::in_process_seams(config.task, config.physics, config.reverse, config.search.generator,
+                               config.run.workers, replays(config, engine));
   std::optional<jobs::UnitJournal> known;
   if (journal)
     keep_in(known.emplace(*journal, generation_hash(config)),
@@ -71,17 +73,16 @@ std::string generate_in_process(const config::Config& config, const nb::object& 
 /// plan [T + 1, bodies, 3] and the number of pushes that the search simulated. If the search finds
 /// no plan, the start is the only state. Throws ValueError unless `start` is one state.
 std::pair<nb::ndarray<nb::numpy, double>, long> plan(const config::Config& config,
-                                                     const StateArray& start) {
+                                                     const StateArray& start,
+                                                     const nb::object& engine) {
   const tasks::Task& task = config.task;
   const Poses from = only_state(start, task.scene.size());
   search::SearchStats stats;
   std::vector<search::Transition> steps;
   {
     const nb::gil_scoped_release release;
-    const search::ReplayBatch replay = counted(
-        search::replay_on_threads(search::forward_replay(task, config.physics, config.forward),
-                                  config.run.workers),
-        stats, search::Stage::kReplays);
+    const search::ReplayBatch replay =
+        counted(replays(config, engine), stats, search::Stage::kReplays);
     steps = plan_forward(task, config.search, from, replay);
   }
   const std::size_t width = task.scene.size() * 3;
@@ -101,7 +102,7 @@ void bind_generation(nb::module_& module) {
       "A journal that cannot be read or written. The message names its file.";
   module.def(
       "generate", &generate_in_process, nb::arg("config"), nb::arg("store"), nb::arg("progress"),
-      nb::arg("journal") = nb::none(),
+      nb::arg("journal") = nb::none(), nb::arg("engine") = nb::none(),
       R"(Generates transitions in this process, on run.workers threads. Returns the report as JSON.
 
 Calls store(poses, action, next_poses, success, source) with the transitions in sequence order.
@@ -111,14 +112,19 @@ ends the generation and is raised.
 
 The answers of the simulators are added to the file `journal`, if one is given, as they come. A
 generation that was killed and begins anew takes them from there and goes on to the same rows.
-Raises JournalError if the file cannot be used.)");
+Raises JournalError if the file cannot be used.
+
+`engine` simulates the pushes if forward.engine is not built in: a function of states
+[N, bodies, 3] and actions [N], SETTLE among them, that returns the states afterwards and whether
+each push could be finished [N].)");
   module.def("share_of_shard", &search::share_of_shard, nb::arg("search"), nb::arg("k"),
              "Returns how many of the transitions shard k = 0 ... shards - 1 is to store.");
-  module.def("plan", &plan, nb::arg("config"), nb::arg("start"),
+  module.def("plan", &plan, nb::arg("config"), nb::arg("start"), nb::arg("engine") = nb::none(),
              R"(Searches for a plan from `start`, [1, bodies, 3], by forward beam search.
 
 Returns the states of the plan, [T + 1, bodies, 3], and the number of simulated pushes. Without
-a plan, the states are only the start. Raises ValueError if `start` does not fit the task.)");
+a plan, the states are only the start. `engine`: as of generate(). Raises ValueError if `start`
+does not fit the task.)");
 }
 
 }  // namespace rtg::bindings

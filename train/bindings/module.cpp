@@ -6,10 +6,12 @@ NB_MODULE(_core, module) {
       "The C++ core of RTG: configuration, tasks, the true dynamics, generation, "
       "values of headings, the bus.";
   module.attr("PROCESSOR") = RTG_PROCESSOR;  // what -march was given
+  rtg::bindings::bind_scene(module);
   rtg::bindings::bind_task(module);
   rtg::bindings::bind_config(module);
   rtg::bindings::bind_simulator(module);
   rtg::bindings::bind_energy(module);
+  rtg::bindings::bind_engine(module);
   rtg::bindings::bind_reverse(module);
   rtg::bindings::bind_search(module);
   rtg::bindings::bind_generation(module);

@@ -7,6 +7,7 @@
 #include "nodes/config/config.hpp"
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
+#include "train/bindings/engine.hpp"
 #include "train/bindings/transition_arrays.hpp"
 
 namespace rtg::bindings {
@@ -15,11 +16,13 @@ namespace {
 /// A beam search with the simulators of its task.
 class TaskSearch {
  public:
-  TaskSearch(const config::Config& config, const StateArray& target, std::uint64_t seed)
+  TaskSearch(const config::Config& config, const StateArray& target, std::uint64_t seed,
+             nb::object engine)
       : config_(config),
+        engine_(std::move(engine)),
         seams_(search::in_process_seams(config_.task, config_.physics, config_.reverse,
-                                        config_.forward, config_.search.generator,
-                                        config_.run.workers)),
+                                        config_.search.generator, config_.run.workers,
+                                        replays(config_, engine_))),
         search_(config_.task, config_.search, only_state(target, config_.task.scene.size()), seed,
                 seams_.paces) {}
   TaskSearch(const TaskSearch&) = delete;  // the search refers to the task of this object
@@ -65,6 +68,7 @@ class TaskSearch {
 
  private:
   config::Config config_;
+  nb::object engine_;
   search::GenerationSeams seams_;
   search::SearchStats stats_;
   search::BeamSearch search_;
@@ -78,8 +82,8 @@ void bind_search(nb::module_& module) {
       R"(A tree of reverse steps from goal states towards a start; see rtg.beam_search.
 
 `target`: the start, [1, bodies, 3]. In units of the core.)")
-      .def(nb::init<const config::Config&, const StateArray&, std::uint64_t>(), nb::arg("config"),
-           nb::arg("target"), nb::arg("seed"))
+      .def(nb::init<const config::Config&, const StateArray&, std::uint64_t, nb::object>(),
+           nb::arg("config"), nb::arg("target"), nb::arg("seed"), nb::arg("engine") = nb::none())
       .def("make_roots", &TaskSearch::make_roots, "Makes the first beam: goal states, at rest.")
       .def("grow", &TaskSearch::grow,
            "Grows a layer. Returns poses, action, next poses, success and source of N transitions.")

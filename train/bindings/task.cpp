@@ -2,12 +2,14 @@
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
 
+#include "core/forward/free_path.hpp"
 #include "core/search/predecessor.hpp"
 #include "core/search/start_distance.hpp"
 #include "core/tasks/contact_heading.hpp"
@@ -256,11 +258,38 @@ void bind_goal_mark(nb::module_& module) {
       .def_ro("negated", &tasks::GoalMark::negated, "Whether the area is to be avoided.");
 }
 
+/// Returns in which states the robot can go its way, to the border of the arena at most, without
+/// coming near a body.
+nb::ndarray<nb::numpy, bool> is_free(const tasks::Task& task, const StateArray& states,
+                                     const WayArray& ways) {
+  check_bodies(states, task.scene.size());
+  check_ways(ways, states.shape(0));
+  OwnedArray<bool> out(states.shape(0));
+  for (std::size_t row = 0; row < states.shape(0); ++row) {
+    const Poses poses = state_at(states, row);
+    const Vector2d way(ways.data()[2 * row], ways.data()[2 * row + 1]);
+    const Pose to = push_target(poses[0], {way.normalized(), way.norm()}, task.push);
+    const double length = (to.position() - poses[0].position()).norm();
+    out.data[row] = forward::free_path_length(task.scene, poses, to) >= length;
+  }
+  return out.release({states.shape(0)});
+}
+
 /// Bodies, joints and goal.
 void bind_geometry(nb::class_<tasks::Task>& bound) {
   bound.def_ro("name", &tasks::Task::name, "The name of the task.")
       .def_prop_ro("outlines", &outlines,
                    "The outer ring of each body, then its holes. [vertices, 2] in m, centroid at 0")
+      .def("is_free", &is_free, nb::arg("states"), nb::arg("ways"),
+           R"(Returns where the robot's way meets no body. [N, bodies, 3], [N, 2] -> [N]
+
+It then keeps at least 0.05 from all of them. Raises ValueError for arrays that do not fit.)")
+      .def_prop_ro(
+          "scene",
+          [](const tasks::Task& task) {
+            return std::make_pair(task.scene.bodies, task.scene.joints);
+          },
+          "The bodies and joints, in units of the core.")
       .def_prop_ro("names", &names, "The unique names of the bodies.")
       .def_prop_ro("kinds", &kinds, "The class of each body.")
       .def_prop_ro("fixed", &fixed, "True for each body that never moves.")

@@ -6,7 +6,7 @@ from rtg import processor
 
 processor.check()  # before the core is loaded
 
-from rtg import forward
+from rtg import engines, forward
 from rtg.beam_search import BeamSearch, Nodes
 from rtg.energy import Contact, StepEnergy
 from rtg.policy import Policy, load_policy, train
@@ -27,6 +27,7 @@ __all__ = [
     "StepEnergy",
     "Task",
     "Transitions",
+    "engines",
     "forward",
     "generate",
     "load_policy",

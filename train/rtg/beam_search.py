@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
 from rtg.arguments import checked
+from rtg.engines import replay_function
 from rtg.task import Task
 from rtg.transitions import Transitions
 
@@ -68,7 +69,8 @@ class BeamSearch:
         self.task = task
         config = task.config_with([f"run.workers={workers}"], settings)
         self.target = task.start(seed) if target is None else np.asarray(target, np.float64)
-        self._core = _core.BeamSearch(config, task.inner_state(self.target, "target")[None], seed)
+        start = task.inner_state(self.target, "target")[None]
+        self._core = _core.BeamSearch(config, start, seed, replay_function(config))
         self._core.make_roots()
 
     def grow(self) -> Transitions:

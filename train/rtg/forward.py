@@ -5,20 +5,23 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rtg import _core
 from rtg.arguments import checked, indices, numbers
+from rtg.engines import simulator
 from rtg.task import Task
 
 Floats = NDArray[np.float64]
 
 
-class _Forward:
-    engine: str  # a value of forward.engine
+class Forward:
+    """The forward simulator that `forward.engine` of a task names."""
+
+    engine: str | None = None  # a value of forward.engine, in place of the task's
 
     @checked
     def __init__(self, task: Task) -> None:
         self.task = task
-        self._core = _core.Simulator(task.config_with([f"forward.engine={self.engine}"]))
+        other = [f"forward.engine={self.engine}"] if self.engine else []
+        self._core = simulator(task.config_with(other))
 
     def push(self, states: ArrayLike, actions: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
         """Simulates a push from each state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
@@ -40,13 +43,19 @@ class _Forward:
         return self.task.outer(after), ok
 
 
-class Newton(_Forward):
+class Newton(Forward):
     """Each sub-step minimises the step energy [eq. (5)]: the model that the reverse one inverts."""
 
     engine = "newton"
 
 
-class Box2D(_Forward):
+class Box2D(Forward):
     """The rigid-body engine Box2D."""
 
     engine = "box2d"
+
+
+class MuJoCo(Forward):
+    """The physics engine MuJoCo, of the extra `mujoco`."""
+
+    engine = "mujoco"

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rtg import _core
 from rtg.arguments import checked
+from rtg.engines import replay_function
 from rtg.errors import StoppedError
 from rtg.files import archives, own_data
 from rtg.task import Task
@@ -107,6 +108,7 @@ class _Search:
 
     def __init__(self, task: Task, config: _core.Config) -> None:
         self._task, self._config = task, config
+        self._engine = replay_function(config)
         self._found: queue.Queue[Transitions | BaseException | None] = queue.Queue(_AHEAD)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -126,7 +128,7 @@ class _Search:
 
     def _run(self) -> None:
         try:
-            _core.generate(self._config, self._store, self._progress)
+            _core.generate(self._config, self._store, self._progress, engine=self._engine)
             self._put(None)
         except StoppedError:
             pass

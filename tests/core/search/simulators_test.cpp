@@ -70,7 +70,7 @@ TEST(Simulators, ReplayIsBox2dsPushAndItsSettling) {
 TEST(Simulators, ReplayIsThePushOfTheEngineAskedFor) {
   const tasks::Task task = gathering();
   const forward::NewtonSimulator newton(task.scene, task.push, {});
-  const ReplayOne replay = forward_replay(task, {}, {forward::Engine::kNewton});
+  const ReplayOne replay = forward_replay(task, {}, {std::string(forward::kNewton)});
   Poses start = task.start;
   start[0] = {-3.0, -1.0, 0.0};
   constexpr int kUp = 12;

@@ -32,6 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.engines import simulator as make_simulator
 from rtg.errors import UserError
 
 Floats = NDArray[np.float64]
@@ -66,7 +67,7 @@ class Curriculum:
     """Provides the starts for a `share` of the training episodes and adapts them to success."""
 
     def __init__(self, config: _core.Config, share: float, seed: int) -> None:
-        self._task, self._simulator = config.task, _core.Simulator(config)
+        self._task, self._simulator = config.task, make_simulator(config)
         self._share = share
         self._rng = np.random.default_rng([seed, 2])
         # States where walks begin.

@@ -12,6 +12,7 @@ from gymnasium import spaces
 from numpy.typing import ArrayLike, NDArray
 
 from rtg import _core
+from rtg.engines import simulator as make_simulator
 from rtg.envs.layouts import Layouts
 from rtg.pictures.draw import MarkLike, objects, outline, state_image
 
@@ -81,7 +82,7 @@ class Interface:
         variant.check()
         self.task = config.task
         self.variant = variant
-        self._simulator = _core.Simulator(config)
+        self._simulator = make_simulator(config)
         self._layouts = Layouts(self.task) if variant.goals == "drawn" else None
         self.action_space = self._action_space()
         self.observation_space = self._observation_space()

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.engines import simulator as make_simulator
 from rtg.envs.curriculum import NOT_FROM_CURRICULUM, Curriculum
 
 Bools = NDArray[np.bool_]
@@ -57,7 +58,7 @@ class TrainingEnvironments:
         self.observation_size = task.observation_size
         self.headings = task.headings
         self.strides: Sequence[float] = task.strides
-        self._simulator = _core.Simulator(config)
+        self._simulator = make_simulator(config)
         self._jitter, self._seed = jitter, seed
         self.curriculum = curriculum
         # Number in the curriculum of the start of each current episode.

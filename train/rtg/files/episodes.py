@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.engines import simulator as make_simulator
 from rtg.files.dataset import SOURCES, Transitions
 
 Floats = NDArray[np.float64]
@@ -85,7 +86,7 @@ def simulated(
     An episode stops after a success, at the horizon of the task, or before a push that the
     simulator cannot finish.
     """
-    simulator, task = _core.Simulator(config), config.task
+    simulator, task = make_simulator(config), config.task
     states = [[start] for start in starts]
     running = range(len(starts))
     for step in range(task.horizon):

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.engines import simulator as make_simulator
 from rtg.learn.tried_actions import TriedActions
 
 Floats = NDArray[np.float64]
@@ -75,7 +76,7 @@ def evaluate(
 
     An episode fails after task.horizon actions, or if the simulator cannot finish a push.
     """
-    task, simulator = config.task, _core.Simulator(config)
+    task, simulator = config.task, make_simulator(config)
     observe = observe or task.observation
     success = np.zeros(len(starts), np.bool_)
     length = np.zeros(len(starts), np.int64)

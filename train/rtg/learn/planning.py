@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rtg import _core, errors
+from rtg.engines import replay_function
 from rtg.files import checkpoint, run_folder
 from rtg.learn import policy_file
 from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, held_out_starts
@@ -39,7 +40,7 @@ def plan(config: _core.Config, start: Floats) -> Plan:
     """
     with _SEARCH_LOCK:
         began, cpu = time.monotonic(), time.process_time()
-        states, pushes = _core.plan(config, start[None])
+        states, pushes = _core.plan(config, start[None], replay_function(config))
         return Plan(states, pushes, time.monotonic() - began, time.process_time() - cpu)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.engines import simulator as make_simulator
 from rtg.files.dataset import Transitions
 from rtg.learn.evaluation import Values
 
@@ -67,7 +68,7 @@ def check_values(
     Leaves out states in which the simulator cannot finish a push, or in which all actions have
     equal values. Returns None if no state is left. states [N, bodies, 3]
     """
-    task, simulator = config.task, _core.Simulator(config)
+    task, simulator = config.task, make_simulator(config)
     actions = np.arange(task.actions)
     after, ok = simulator.push(
         np.repeat(states, len(actions), axis=0), np.tile(actions, len(states))

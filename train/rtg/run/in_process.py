@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from rtg import _core
+from rtg.engines import replay_function
 from rtg.errors import RunError, StoppedError
 from rtg.files import row_digest, run_folder
 from rtg.files.dataset import Rows
@@ -35,6 +36,7 @@ class Generation:
     def __init__(self, config: _core.Config, recorder: Recorder, journal: Path) -> None:
         self._config, self._recorder, self._journal = config, recorder, journal
         self._workers: int = config.run.workers
+        self._engine = replay_function(config)
         self._progress: dict[str, Any] = {}
         self._stop = False
         self._report: str | None = None
@@ -73,7 +75,7 @@ class Generation:
     def _generate(self) -> None:
         try:
             self._report = _core.generate(
-                self._config, self._on_rows, self._on_progress, self._journal
+                self._config, self._on_rows, self._on_progress, self._journal, self._engine
             )
         except _core.JournalError as error:
             self._failure = RunError(str(error))

@@ -1,0 +1,137 @@
+"""The seam of forward simulators: what a user's class is given, and what becomes of its answers."""
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rtg
+from rtg import cli
+from rtg.engines import EngineError, Scene, simulator
+from rtg.errors import UserError
+
+HERE = Path(__file__).parent
+
+
+@pytest.fixture(autouse=True)
+def _toys_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(HERE))
+
+
+def of(engine: str, task: str = "gathering") -> rtg.Task:
+    return rtg.load_task(task, [f"forward.engine=toy_engines:{engine}"])
+
+
+def test_pushes_are_what_the_engine_says_in_single_precision_and_in_the_arena() -> None:
+    task = of("Ghost")
+    states = np.repeat(task.start()[None], task.actions, 0)
+    states[:, 0, :2] = 7.3
+    ends, ok = rtg.forward.Forward(task).push(states, np.arange(task.actions))
+    assert ok.all() and (ends == np.float32(ends)).all()
+    ways = task.core.ways(np.arange(task.actions))
+    np.testing.assert_allclose(ends[:, 0, :2], np.clip(7.3 + ways, -8.0, 8.0), atol=1e-6)
+    np.testing.assert_allclose(ends[:, 1:], states[:, 1:], atol=1e-6)
+
+
+def test_a_push_that_cannot_be_simulated_leaves_the_state() -> None:
+    task = of("Finicky")
+    states = np.repeat(task.start()[None], 48, 0)
+    ends, ok = rtg.forward.Forward(task).push(states, np.arange(48))
+    assert 0 < ok.sum() < 48
+    assert (ends[~ok] == states[~ok]).all() and (ends[ok] != states[ok]).any((1, 2)).all()
+
+
+def test_no_states_are_pushed_without_asking() -> None:
+    task = of("Broken")
+    ends, ok = rtg.forward.Forward(task).push(np.zeros((0, 4, 3)), np.zeros(0, np.int64))
+    assert ends.shape == (0, 4, 3) and ok.shape == (0,)
+
+
+def test_a_simulator_can_be_pickled() -> None:
+    task = of("Ghost")
+    one = simulator(task.config)
+    other = pickle.loads(pickle.dumps(one))
+    push = task.inner(task.start()[None]), np.array([3])
+    assert (one.push(*push)[0] == other.push(*push)[0]).all()
+
+
+def test_a_failure_has_the_users_traceback_and_the_state() -> None:
+    task = of("Broken")
+    states = np.repeat(task.start()[None], 3, 0)
+    states[1, 0, 0] = 2.5
+    with pytest.raises(EngineError) as caught:
+        rtg.forward.Forward(task).push(states, [0, 1, 2])
+    lines = str(caught.value).splitlines()
+    assert lines[0] == "forward.engine toy_engines:Broken failed:"
+    assert lines[1] == "Traceback (most recent call last):"
+    assert f'File "{HERE / "toy_engines.py"}"' in lines[2]
+    assert "ZeroDivisionError: no such place" in lines
+    assert lines[-1].startswith("in the state [[2.5, -5.0, 0.0]")
+    assert "rtg/engines" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("engine", "words"),
+    [
+        ("BrokenTogether", "in a batch of 2 states, but in none of them alone"),
+        (
+            "Short",
+            r"returned arrays \(2, 1, 3\) of float64 and \(2,\) of bool; legal: states \(2, 4",
+        ),
+    ],
+)
+def test_other_failures_say_what_they_are(engine: str, words: str) -> None:
+    task = of(engine)
+    with pytest.raises(EngineError, match=words):
+        rtg.forward.Forward(task).push(np.repeat(task.start()[None], 2, 0), [0, 1])
+
+
+@pytest.mark.parametrize(
+    ("engine", "error", "words"),
+    [
+        ("toy_engines:Unmade", EngineError, "RuntimeError: no licence\nwhen it was made"),
+        ("toy_engines:Missing", UserError, "the module toy_engines has no Missing; legal: a class"),
+        ("toy_engines:NoEngine", UserError, "has no method push; legal: a class as"),
+        ("no_such.module:Engine", UserError, "there is no module no_such; legal: one on the path"),
+    ],
+)
+def test_an_engine_that_cannot_be_made(engine: str, error: type, words: str) -> None:
+    config = rtg.load_task("gathering", [f"forward.engine={engine}"]).config
+    with pytest.raises(error, match=words):
+        simulator(config)
+
+
+@pytest.mark.parametrize("engine", ["bax2d", "a:b:c", ":Engine", "module:2x"])
+def test_a_name_of_no_engine_is_refused(engine: str) -> None:
+    with pytest.raises(ValueError, match=r"is no engine.*legal: box2d, newton, mujoco, or module:"):
+        rtg.load_task("gathering", [f"forward.engine={engine}"])
+
+
+@pytest.mark.parametrize("task", ["gathering", "push_t", "art_manip", "drawer"])
+def test_a_scene_is_in_metres_and_kilograms(task: str) -> None:
+    loaded = rtg.load_task(task)
+    scene = Scene(loaded.config)
+    assert [body.name for body in scene.bodies] == loaded.bodies
+    robot = scene.bodies[0]
+    points = np.concatenate([part.vertices for part in robot.parts])
+    reach = np.linalg.norm(points, axis=1).max() + robot.parts[0].radius
+    assert reach == pytest.approx(scene.size)
+    for joint in scene.joints:
+        ends = []
+        for body, (x, y) in ((joint.parent, joint.on_parent), (joint.child, joint.on_child)):
+            left, up, theta = scene.start[body]
+            c, s = np.cos(theta), np.sin(theta)
+            ends.append(np.array([left + c * x - s * y, up + s * x + c * y]))
+        x, y = joint.axis
+        held = np.array([[-y, x]]) if joint.type == "prismatic" else np.eye(2)
+        np.testing.assert_allclose(held @ (ends[1] - ends[0]), 0.0, atol=1e-6)
+
+
+def test_a_run_with_a_broken_engine_ends_with_its_traceback(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["gathering", "--in-process", "--no-train", "--transitions", "300"]
+    setting = ["--set", "forward.engine=toy_engines:Broken"]
+    assert cli.main([*words, *setting, "--out", str(tmp_path / "run")]) == 1
+    told = capsys.readouterr().err
+    assert "ZeroDivisionError: no such place" in told and "in the state [[" in told

@@ -1,0 +1,79 @@
+"""MuJoCo as a forward simulator, beside Box2D."""
+
+import numpy as np
+import pytest
+import rtg
+from numpy.typing import NDArray
+from rtg import _core
+
+pytest.importorskip("mujoco", reason="the extra `mujoco` is not installed")
+
+
+def meeting_pushes(task: rtg.Task, count: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """States on the way of random walks that seek contact, and pushes there."""
+    box2d = rtg.forward.Box2D(task)
+    states = np.stack([task.start(seed) for seed in range(-(-count // 10))])
+    found = []
+    for step in range(20):
+        actions = task.core.contact_headings(task.inner(states), step)
+        if step >= 10:
+            found.append((states, actions))
+        after, ok = box2d.push(states, actions)
+        states = np.where(ok[:, None, None], after, states)
+    return np.concatenate([s for s, _ in found])[:count], np.concatenate([a for _, a in found])[
+        :count
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "most"),
+    [("gathering", 0.02), ("push_t", 0.15), ("art_manip", 0.05), ("drawer", 0.02), ("cable", 0.15)],
+)
+def test_pushes_end_about_where_those_of_box2d_do(name: str, most: float) -> None:
+    task = rtg.load_task(name)
+    states, actions = meeting_pushes(task, 60)
+    box2d, there = rtg.forward.Box2D(task).push(states, actions)
+    mujoco, ok = rtg.forward.MuJoCo(task).push(states, actions)
+    both = there & ok
+    assert both.mean() > 0.9
+    apart = np.linalg.norm((mujoco - box2d)[both][:, :, :2], axis=2) * task.core.metre
+    assert np.median(apart.max(1)) < most
+    assert np.abs(box2d - states)[:, 1:, :2].max() > 0.3
+
+
+def test_equal_pushes_end_equally_in_any_batch() -> None:
+    task = rtg.load_task("art_manip", ["forward.engine=mujoco"])
+    states, actions = meeting_pushes(task, 40)
+    engine = rtg.forward.Forward(task)
+    ends, ok = engine.push(states, actions)
+    order = np.random.default_rng(3).permutation(40)[:17]
+    again, still_ok = rtg.forward.Forward(task).push(states[order], actions[order])
+    assert (again == ends[order]).all() and (still_ok == ok[order]).all()
+
+
+def test_joints_stay_closed() -> None:
+    task = rtg.load_task("cable", ["forward.engine=mujoco"])
+    states, actions = meeting_pushes(task, 30)
+    ends, ok = rtg.forward.Forward(task).push(states, actions)
+    assert ok.any() and task.core.is_legal(task.inner(ends[ok])).mean() > 0.9
+
+
+def test_lengths_and_densities_have_no_scale() -> None:
+    """Gathering at a twentieth and with a thousandfold density has the same pushes."""
+    task = rtg.load_task("gathering", ["forward.engine=mujoco"])
+    states, actions = meeting_pushes(task, 20)
+    inner = task.inner(states)
+    ends, _ = rtg.engines.simulator(task.config).push(inner, actions)
+    text = task.config.yaml.replace("density: 1.0, friction", "density: 1000.0, friction")
+    heavy = _core.Config.from_text(text, "heavy")
+    again, _ = rtg.engines.simulator(heavy).push(inner, actions)
+    np.testing.assert_allclose(again, ends, atol=1e-5)
+
+
+def test_bodies_come_to_rest_apart() -> None:
+    task = rtg.load_task("gathering", ["forward.engine=mujoco"])
+    state = task.inner(task.start()[None])
+    state[0, 2] = state[0, 1] + [1.1, 0.2, 0.0]  # boxes of 1.2 m
+    assert not task.core.is_legal(state)[0]
+    ends, ok = rtg.engines.simulator(task.config).push(state, np.array([_core.SETTLE]))
+    assert ok[0] and task.core.is_legal(ends)[0]

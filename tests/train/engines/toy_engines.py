@@ -1,0 +1,53 @@
+"""Forward simulators of a user: forward.engine toy_engines:CLASS."""
+
+import numpy as np
+from rtg.engines import Scene
+
+
+class Ghost:
+    """The robot goes through everything."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        ends = states.copy()
+        ends[:, 0, :2] += ways
+        return ends, np.ones(len(states), bool)
+
+
+class Finicky(Ghost):
+    """Cannot simulate pushes to the left."""
+
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return super().push(states, ways)[0], ways[:, 0] >= 0.0
+
+
+class Broken(Ghost):
+    """Fails for states whose robot is right of 1 m."""
+
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if (states[:, 0, 0] > 1.0).any():
+            raise ZeroDivisionError("no such place")
+        return super().push(states, ways)
+
+
+class BrokenTogether(Ghost):
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if len(states) > 1:
+            raise MemoryError("too many")
+        return super().push(states, ways)
+
+
+class Short(Ghost):
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return states[:, :1], np.ones(len(states), bool)
+
+
+class Unmade(Ghost):
+    def __init__(self, scene: Scene) -> None:
+        raise RuntimeError("no licence")
+
+
+class NoEngine:
+    pass

@@ -1,0 +1,184 @@
+"""The seam between RTG and a forward simulator."""
+
+from __future__ import annotations
+
+import importlib
+import traceback
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rtg import _core
+from rtg.engines.scene import Bools, Floats, Scene
+from rtg.errors import RunError, UserError
+
+Integers = NDArray[np.int64]
+_OURS = {"mujoco": "rtg.engines.mujoco:MuJoCo"}
+
+
+class EngineError(RunError):
+    """A forward simulator failed: its traceback, and the state in which it did."""
+
+
+class Engine(Protocol):
+    """What a class must offer to be a `forward.engine: module:Class`.
+
+    It holds no state of an episode: equal arguments give equal results, in whatever order.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        """Makes the simulator of a scene."""
+
+    def push(self, states: Floats, ways: Floats) -> tuple[Floats, Bools]:
+        """Simulates a push from each state. [N, bodies, 3], [N, 2] -> [N, bodies, 3], [N]
+
+        The robot goes its way (x, y) [m] straight ahead without turning, as far as its force
+        suffices; then all bodies come to rest. If the way is 0, they come to rest while the robot
+        stays. Returns the states at rest, x [m], y [m], θ [rad], and which pushes could be
+        simulated.
+        """
+        ...
+
+
+class Simulator(Protocol):
+    """A forward simulator in the units of the core, as `_core.Simulator` is one."""
+
+    def push(self, states: Floats, actions: Integers) -> tuple[Floats, Bools]:
+        """Simulates an action in each state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]"""
+        ...
+
+    def push_along(self, states: Floats, ways: Floats) -> tuple[Floats, Bools]:
+        """The same with a way (x, y) of the robot instead of an action. [N, 2]"""
+        ...
+
+
+class _Outer:
+    """An Engine as a Simulator.
+
+    Robots end in the arena, states have single precision, and pushes that could not be simulated
+    leave them as they are.
+    """
+
+    def __init__(self, config: _core.Config) -> None:
+        self._config, self._task = config, config.task
+        self._name: str = config.forward.engine
+        made = _class_of(self._name)
+        self._engine: Engine = self._guarded(lambda: made(Scene(config)), "when it was made")
+
+    def __reduce__(self) -> tuple[Callable[[_core.Config], Simulator], tuple[_core.Config]]:
+        return simulator, (self._config,)
+
+    def push(self, states: Floats, actions: Integers) -> tuple[Floats, Bools]:
+        ways = np.zeros((len(actions), 2))
+        pushes = actions != _core.SETTLE
+        ways[pushes] = self._task.ways(np.ascontiguousarray(actions[pushes]))
+        return self.push_along(states, ways)
+
+    def push_along(self, states: Floats, ways: Floats) -> tuple[Floats, Bools]:
+        if not len(states):
+            return states.copy(), np.ones(0, np.bool_)
+        metre = [self._task.metre, self._task.metre, 1.0]
+        arena = self._task.arena
+        robot = states[:, 0, :2]
+        inside = np.clip(robot + ways, -arena, arena) - robot
+        ends, ok = self._checked(states / metre, inside / self._task.metre)
+        after = np.float32(ends * metre).astype(np.float64)
+        ok = ok & np.isfinite(after).all((1, 2))
+        return np.where(ok[:, None, None], after, states), ok
+
+    def _checked(self, states: Floats, ways: Floats) -> tuple[Floats, Bools]:
+        """Asks the engine; if it fails, state by state, to tell of the one at fault."""
+        try:
+            answer = self._engine.push(states.copy(), ways.copy())
+        except Exception as error:
+            failure = error
+        else:
+            return self._answer(answer, states)
+        for state, way in zip(states, ways, strict=True):
+            where = f"in the state {state.tolist()} with the way {way.tolist()}"
+            self._guarded(partial(self._engine.push, state[None].copy(), way[None].copy()), where)
+        where = f"in a batch of {len(states)} states, but in none of them alone"
+        raise self._failure(failure, where) from failure
+
+    def _answer(self, answer: Any, states: Floats) -> tuple[Floats, Bools]:
+        """Returns what the engine has returned for `states`, if it has the right shapes."""
+        try:
+            ends, ok = (np.asarray(part) for part in answer)
+            if ends.shape != states.shape or ok.shape != (len(states),) or ok.dtype != np.bool_:
+                raise ValueError(
+                    f"arrays {ends.shape} of {ends.dtype} and {ok.shape} of {ok.dtype}"
+                )
+            return ends.astype(np.float64), ok
+        except (TypeError, ValueError) as error:
+            raise EngineError(
+                f"{self._prefix()} returned {error}; legal: states {states.shape} of numbers and "
+                f"({len(states)},) of bool"
+            ) from error
+
+    def _guarded(self, call: Callable[[], Any], when: str) -> Any:
+        try:
+            return call()
+        except (UserError, RunError):
+            raise
+        except Exception as error:
+            raise self._failure(error, when) from error
+
+    def _failure(self, error: Exception, when: str) -> EngineError:
+        return EngineError(f"{self._prefix()} failed:\n{_lines(error)}\n{when}")
+
+    def _prefix(self) -> str:
+        return f"forward.engine {self._name}"
+
+
+def _lines(error: BaseException) -> str:
+    """Returns the traceback without the frames of this file."""
+    trace = error.__traceback__
+    while trace and trace.tb_next and trace.tb_frame.f_code.co_filename == __file__:
+        trace = trace.tb_next
+    return "".join(traceback.format_exception(type(error), error, trace)).rstrip()
+
+
+def _class_of(name: str) -> Callable[[Scene], Engine]:
+    """Returns the class that `name` stands for. Raises UserError if there is none."""
+    module, _, made = _OURS.get(name, name).partition(":")
+    try:
+        found = getattr(importlib.import_module(module), made)
+    except ModuleNotFoundError as error:
+        if error.name and not f"{module}.".startswith(f"{error.name}."):
+            raise EngineError(
+                f"forward.engine {name} failed on import:\n{_lines(error)}"
+            ) from error
+        raise UserError(
+            f"forward.engine {name}: there is no module {error.name}; legal: one on the path of "
+            "Python (PYTHONPATH) or in this folder"
+        ) from None
+    except AttributeError:
+        raise UserError(
+            f"forward.engine {name}: the module {module} has no {made}; legal: a class in it"
+        ) from None
+    if not callable(getattr(found, "push", None)):
+        raise UserError(
+            f"forward.engine {name}: has no method push; legal: a class as rtg.engines.Engine"
+        )
+    made_by: Callable[[Scene], Engine] = found
+    return made_by
+
+
+def simulator(config: _core.Config) -> Simulator:
+    """Returns the forward simulator that a configuration names.
+
+    Raises UserError if there is none, EngineError if it cannot be made.
+    """
+    if config.forward.is_built_in:
+        return _core.Simulator(config)
+    return _Outer(config)
+
+
+def replay_function(
+    config: _core.Config,
+) -> Callable[[Floats, Integers], tuple[Floats, Bools]] | None:
+    """Returns what the core is to ask for replays; None if the engine is built in."""
+    return None if config.forward.is_built_in else simulator(config).push
