@@ -13,6 +13,7 @@ from rtg.compare import report_files
 from rtg.compare.cells import Cell, Grid
 from rtg.compare.report_files import write_report
 from rtg.errors import UserError
+from rtg.files import checked_table
 from rtg.files.run_folder import write_json
 
 GOOD, BAD = [0.2, 0.8, 0.96], [0.0, 0.5, 0.6, 0.7]
@@ -296,7 +297,7 @@ def test_curves_without_costs_are_named(folder, tmp_path):
     runs = tmp_path / "runs"
     shutil.copytree(folder, runs)
     path = runs / CELLS[0].name / "progress.csv"
-    path.write_text(path.read_text().replace("cpu_s", "other"))
+    path.write_text(checked_table.plain(path.read_text()).replace("cpu_s", "other"))
     assert_named_and_report_stays(runs, path, "lacks columns; legal: ")
 
 

@@ -12,7 +12,7 @@ from rtg.compare.cells import Cell, read_grid
 from rtg.compare.methods import METHODS
 from rtg.compare.report_plots import split_names
 from rtg.compare.run_results import read_comparison
-from rtg.files import replay_gaps
+from rtg.files import checked_table, replay_gaps
 
 
 def comparison(folder, courses):
@@ -78,7 +78,7 @@ def test_the_band_is_the_sample_deviation_from_where_all_seeds_have_a_value(tmp_
     ):
         finished(tmp_path, cell, course)
     log = tmp_path / cells[1].name / "progress.csv"  # no training episode had ended by then
-    rows = log.read_text().splitlines()
+    rows = checked_table.plain(log.read_text()).splitlines()
     at = rows[0].split(",").index("rollout_success")
     first = rows[1].split(",")
     first[at] = ""

@@ -19,7 +19,9 @@ from rtg import _core
 from rtg.errors import UserError
 from rtg.files import best_episode, checkpoint, dataset, own_data, run_folder, versions
 from rtg.learn import networks, policy_file
+from rtg.learn.training_log import TrainingLog
 from rtg.run import effective_config
+from rtg.run.results import learning_curve
 from samples import random_transitions
 from training_runs import TINY
 
@@ -46,6 +48,12 @@ def write_transitions(path: Path) -> None:
     dataset.write(path, random_transitions(20), dataset.origin_of(CONFIG))
 
 
+def write_progress(path: Path) -> None:
+    log = TrainingLog(path.parent)
+    for k in range(1, 4):
+        log.add({"interactions": 500 * k, "success_rate": k / 7, "cpu_s": 2.5 * k})
+
+
 JSON = Kind(
     lambda path: run_folder.write_json(path, {"a": [0.5, 1e-9], "ä": {"b": None}, "c": "d" * 64}),
     run_folder.read_json,
@@ -65,6 +73,7 @@ KINDS = {
     "config.yaml": Kind(
         lambda path: run_folder.write_config(path, CONFIG.yaml), effective_config.load_written
     ),
+    "progress.csv": Kind(write_progress, learning_curve),
     "summary.json": JSON,
     "generation.json": Kind(
         lambda path: run_folder.write_json(path, {"nodes": [[1, 2]]}, indent=None), JSON.read
@@ -100,6 +109,24 @@ def test_every_bit_of_an_object_counts(name: str, tmp_path: Path) -> None:
         path.write_bytes(changed)
         with pytest.raises(UserError, match=f"^{path}: "):
             kind.read(path)
+
+
+def test_rows_of_a_table_that_moved_or_went_are_noticed_but_for_the_last(tmp_path: Path) -> None:
+    path = tmp_path / "progress.csv"
+    write_progress(path)
+    head, *rows = path.read_text().splitlines()
+    for other in ([rows[0], rows[2]], [rows[1], rows[0], rows[2]], [*rows, rows[2]]):
+        path.write_text("\n".join([head, *other]) + "\n")
+        with pytest.raises(UserError, match=f"^{path}: "):
+            learning_curve(path)
+    path.write_text("\n".join([head, *rows[:2]]) + "\n")
+    assert learning_curve(path)["interactions"].tolist() == [500, 1000]
+
+
+def test_tables_of_earlier_versions_have_no_checks(tmp_path: Path) -> None:
+    path = tmp_path / "progress.csv"
+    path.write_text("interactions,cpu_s\n5,1.5\n10,\n")
+    np.testing.assert_array_equal(learning_curve(path)["cpu_s"], [1.5, np.nan])
 
 
 def test_objects_and_arrays_of_others_have_no_digest(tmp_path: Path) -> None:

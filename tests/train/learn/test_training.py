@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from rtg import _core
 from rtg.errors import RunError, UserError
-from rtg.files import checkpoint, dataset
+from rtg.files import checked_table, checkpoint, dataset
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
 from rtg.learn import policy_file, trainer
@@ -27,7 +27,7 @@ def test_a_run_leaves_its_files(tmp_path: Path, rows: Rows) -> None:
     with (folder / "progress.csv").open() as file:
         table = list(csv.DictReader(file))
     assert [row["interactions"] for row in table] == ["80", "160", "240"]
-    assert set(table[0]) == set(COLUMNS)
+    assert set(table[0]) == {*COLUMNS, checked_table.COLUMN}
     assert all(table[-1][name] != "" for name in COLUMNS)
     result = json.loads((folder / "training.json").read_text())
     assert result["interactions"] == 240 and result["lost_transitions"] == 0

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from rtg import _core
 from rtg.errors import UserError
+from rtg.files import checked_table
 from rtg.view.run_events import BestEpisode, Evaluation, Gaps, RunEvents, Steps
 from view_runs import GENERATION, LEARNING, episode, finished, generated, learn
 
@@ -58,8 +59,9 @@ def test_what_is_new_is_told_once(tmp_path, rows):
     assert watched.new() == []
     learn(folder)
     assert len(of(Evaluation, watched.new())) == 2
-    with (folder / "progress.csv").open("a") as file:
-        file.write((folder / "progress.csv").read_text().splitlines()[-1] + "\n")
+    file = folder / "progress.csv"
+    table = checked_table.plain(file.read_text())
+    file.write_text(checked_table.checked(table + table.splitlines()[-1] + "\n"))
     assert len(of(Evaluation, watched.new())) == 1
 
 

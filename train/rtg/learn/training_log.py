@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rtg.files import best_episode
+from rtg.files import best_episode, checked_table
 from rtg.files.run_folder import write_json, write_text
 from rtg.learn.evaluation import Evaluation
 from rtg.learn.log_sinks import LazySinks
@@ -60,14 +60,14 @@ class TrainingLog:
             self.sinks.add(row, self.rows[:-1])
 
     def write(self) -> None:
-        """Writes all rows to progress.csv."""
+        """Writes all rows to progress.csv, with a column that tells when they were changed."""
         text = io.StringIO()
         table = csv.DictWriter(text, COLUMNS, lineterminator="\n")
         table.writeheader()
         for row in self.rows:
             shown = {k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()}
             table.writerow(shown)
-        write_text(self._folder / "progress.csv", text.getvalue())
+        write_text(self._folder / "progress.csv", checked_table.checked(text.getvalue()))
 
     def write_result(self, final: Evaluation, figures: Mapping[str, Any]) -> None:
         """Writes best_episode.npz and then training.json."""

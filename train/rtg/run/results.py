@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rtg import errors
 from rtg.errors import UserError
-from rtg.files import best_episode, dataset, own_data, run_folder
+from rtg.files import best_episode, checked_table, dataset, own_data, run_folder
 from rtg.files.episodes import replayed_plan
 from rtg.pictures import episode_pictures, plots
 from rtg.run import diagnosis, start_regions
@@ -24,10 +24,11 @@ Floats = NDArray[np.float64]
 def learning_curve(path: Path) -> dict[str, Floats]:
     """Reads the columns of progress.csv, [N] each. Empty entries become NaN.
 
-    Raises UserError if the file is damaged.
+    Raises UserError if the file is damaged, or was changed since the run wrote it.
     """
     text = run_folder.read_text(path)
     try:
+        text = checked_table.plain(text)
         rows = list(csv.DictReader(text.splitlines(keepends=True), strict=True))
         names = rows[0].keys() if rows else ()
         return {name: np.array([float(row[name] or "nan") for row in rows]) for name in names}
