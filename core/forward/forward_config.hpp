@@ -22,8 +22,8 @@ struct ForwardConfig {
   template <class Visitor>
   void visit(Visitor& v) {
     v.text("engine", engine,
-           "forward simulator of replays, training and evaluation: box2d, newton, mujoco, or "
-           "module:Class in Python");
+           "forward simulator of replays, training and evaluation; box2d, newton, mujoco, "
+           "module:Class");
   }
 };
 

@@ -45,11 +45,8 @@ void bind_config(nb::module_& module) {
   bind_section<PhysicsConfig>(
       module, "PhysicsConfig",
       "The section `physics`. The physics that reverse solver and simulators share.");
-  nb::class_<forward::ForwardConfig> forward(
+  bind_section<forward::ForwardConfig>(
       module, "ForwardConfig", "The section `forward`. The simulator of the true dynamics.");
-  bind_fields(forward);
-  forward.def_prop_ro("is_built_in", &forward::ForwardConfig::is_built_in,
-                      "Whether the core has the engine; else Python brings it along.");
   bind_section<reverse::ReverseConfig>(module, "ReverseConfig",
                                        "The section `reverse`. The reverse solver.");
   bind_section<search::SearchConfig>(
@@ -67,6 +64,10 @@ Error messages use `name` as the name of the file. Paths in the text are relativ
       .def_ro("task", &config::Config::task, "The task.")
       .def_ro("physics", &config::Config::physics, "The section `physics`.")
       .def_ro("forward", &config::Config::forward, "The section `forward`.")
+      .def_prop_ro(
+          "has_built_in_engine",
+          [](const config::Config& config) { return config.forward.is_built_in(); },
+          "Whether the core has the forward simulator; else Python brings it along.")
       .def_ro("reverse", &config::Config::reverse, "The section `reverse`.")
       .def_ro("search", &config::Config::search, "The section `search`.")
       .def_ro("train", &config::Config::train, "The section `train`.")

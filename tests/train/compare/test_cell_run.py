@@ -83,7 +83,7 @@ def test_methods_stand_above_the_file_and_the_settings(words):
     ("more", "what"),
     [
         (["--set", "train.batch=9"], "train.batch = 8, asked for is 9"),
-        (["--set", "search.breadth=9"], "search.breadth = 16, asked for is 9"),
+        (["--set", "search.breadth=9"], "search.breadth = 100, asked for is 9"),
     ],
 )
 def test_a_run_with_another_configuration_is_refused_and_left_alone(words, more, what):

@@ -172,7 +172,7 @@ def simulator(config: _core.Config) -> Simulator:
 
     Raises UserError if there is none, EngineError if it cannot be made.
     """
-    if config.forward.is_built_in:
+    if config.has_built_in_engine:
         return _core.Simulator(config)
     return _Outer(config)
 
@@ -181,4 +181,4 @@ def replay_function(
     config: _core.Config,
 ) -> Callable[[Floats, Integers], tuple[Floats, Bools]] | None:
     """Returns what the core is to ask for replays; None if the engine is built in."""
-    return None if config.forward.is_built_in else simulator(config).push
+    return None if config.has_built_in_engine else simulator(config).push

@@ -6,11 +6,11 @@ forward.engine: rtg.examples.environment_engine:Environment
 import gymnasium
 import numpy as np
 
-from rtg.engines import Scene
+import rtg
 
 
 class Environment:
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: rtg.engines.Scene) -> None:
         self.stride = scene.stride  # actions are ways in units of the longest stride
         self.env = gymnasium.make("RTG/Gathering-v0", actions="continuous").unwrapped
         self.env.reset()

@@ -3,13 +3,13 @@
 import numpy as np
 import pymunk
 
-from rtg.engines import Scene
+import rtg
 
 STEPS, REST = 250, 75  # of a push, and until all have come to rest
 
 
 class Pymunk:
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: rtg.engines.Scene) -> None:
         speed = scene.stride / scene.push_s
         self.scene = scene
         self.force = scene.force_factor * scene.bodies[0].mass * scene.damping * speed
