@@ -33,13 +33,13 @@ std::vector<double> least_distances(std::span<const Node> nodes, const Poses& st
   }));
 }
 
-/// Nodes that trees grown together have in a layer, if one tree has less.
-constexpr int kNodesTogether = 40;
+/// Nodes that trees grown together have in a layer, if one tree has less, and most such trees.
+constexpr int kNodesTogether = 40, kTreesTogether = 10;
 
 /// Returns how many trees to grow together, after `number` trees of the shard: as many as there are
 /// transitions left for. The first tree grows alone, as it tells how many transitions one takes.
 int trees_together(const Generation& run, int number) {
-  const int most = std::max(1, kNodesTogether / run.config.breadth);
+  const int most = std::clamp(kNodesTogether / run.config.breadth, 1, kTreesTogether);
   if (number == 0 || run.data.stored() == 0) return 1;
   const long left = run.data.left() * number / run.data.stored();  // of such trees
   return static_cast<int>(std::clamp(left, 1L, static_cast<long>(most)));

@@ -45,27 +45,33 @@ const char* type_of(const Joint& joint) {
 
 void bind_scene(nb::module_& module) {
   nb::class_<Body>(module, "Body", "A rigid body, in units of the core; see rtg.engines.Body.")
-      .def_ro("name", &Body::name)
-      .def_ro("kind", &Body::kind)
-      .def_prop_ro("parts", &parts, nb::rv_policy::move)
-      .def_prop_ro("mass", [](const Body& body) { return mass_of(body).mass; })
-      .def_prop_ro("moment", [](const Body& body) { return mass_of(body).moment; })
-      .def_ro("friction", &Body::friction)
-      .def_ro("fixed", &Body::fixed);
+      .def_ro("name", &Body::name, "The name of the body.")
+      .def_ro("kind", &Body::kind, "The class that goals refer to.")
+      .def_prop_ro("parts", &parts, nb::rv_policy::move,
+                   "The convex parts: vertices [n, 2] and the radius around them.")
+      .def_prop_ro(
+          "mass", [](const Body& body) { return mass_of(body).mass; }, "The mass.")
+      .def_prop_ro(
+          "moment", [](const Body& body) { return mass_of(body).moment; },
+          "The moment of inertia about the centre of mass.")
+      .def_ro("friction", &Body::friction, "The coefficient of friction; a pair uses √(μ₁μ₂).")
+      .def_ro("fixed", &Body::fixed, "Whether the body never moves.");
+  const auto at = [](Vector2d Joint::*field) {
+    return [field](const Joint& joint) { return point(joint.*field); };
+  };
   nb::class_<Joint>(module, "Joint", "A joint, in units of the core; see rtg.engines.Joint.")
-      .def_prop_ro("type", &type_of)
-      .def_ro("parent", &Joint::parent)
-      .def_ro("child", &Joint::child)
-      .def_prop_ro(
-          "on_parent", [](const Joint& joint) { return point(joint.on_parent); },
-          nb::rv_policy::move)
-      .def_prop_ro(
-          "on_child", [](const Joint& joint) { return point(joint.on_child); }, nb::rv_policy::move)
-      .def_prop_ro(
-          "axis", [](const Joint& joint) { return point(joint.axis); }, nb::rv_policy::move)
-      .def_ro("angle", &Joint::angle)
-      .def_ro("lower", &Joint::lower)
-      .def_ro("upper", &Joint::upper);
+      .def_prop_ro("type", &type_of, "\"revolute\", \"prismatic\" or \"fixed\".")
+      .def_ro("parent", &Joint::parent, "The index of the parent.")
+      .def_ro("child", &Joint::child, "The index of the child.")
+      .def_prop_ro("on_parent", at(&Joint::on_parent), nb::rv_policy::move,
+                   "The point on the parent, in its frame. [2]")
+      .def_prop_ro("on_child", at(&Joint::on_child), nb::rv_policy::move,
+                   "The point on the child, in its frame. [2]")
+      .def_prop_ro("axis", at(&Joint::axis), nb::rv_policy::move,
+                   "The axis of a prismatic joint, in the frame of the parent. [2]")
+      .def_ro("angle", &Joint::angle, "The child's angle to its parent, unless it is revolute.")
+      .def_ro("lower", &Joint::lower, "The lower limit of the joint's value.")
+      .def_ro("upper", &Joint::upper, "The upper limit of the joint's value.");
 }
 
 }  // namespace rtg::bindings
