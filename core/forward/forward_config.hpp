@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 
@@ -9,7 +8,7 @@ namespace rtg::forward {
 /// The engines of this library; see make_simulator().
 inline constexpr std::string_view kBox2d = "box2d";  // Box2dSimulator
 inline constexpr std::string_view kNewton =
-    "newton";  // NewtonSimulator: what the reverse simulator inverts
+    "newton";  // NewtonSimulator, the model of reverse solves
 
 /// Names what a run takes for the true dynamics: of replays, training and evaluation.
 struct ForwardConfig {

@@ -80,12 +80,16 @@ int grow_trees(Generation& run, int number) {
   for (const auto& tree : trees) run.starts.push_back({tree->search.target()});
   for (int layer = 1; layer <= run.layers(); ++layer) {
     std::vector<BeamSearch*> growing;
-    for (const auto& tree : trees)
-      if (tree->patience > 0 && !tree->search.beam().empty()) growing.push_back(&tree->search);
+    std::vector<std::size_t> of_trees;  // indices of those in `growing`
+    for (std::size_t k = 0; k < trees.size(); ++k) {
+      if (trees[k]->patience == 0 || trees[k]->search.beam().empty()) continue;
+      growing.push_back(&trees[k]->search);
+      of_trees.push_back(k);
+    }
     if (growing.empty() || run.data.full() || run.cancelled()) break;
     run.data.store(BeamSearch::grow_together(growing, run.seams.solve, run.seams.replay, run.stats),
                    run.replay(Stage::kBranches));
-    for (std::size_t k = 0; k < trees.size(); ++k) {
+    for (const std::size_t k : of_trees) {
       Tree& tree = *trees[k];
       run.starts[starts + k].depth = tree.search.start_depth();
       const double nearest = tree.search.min_start_distance();

@@ -188,7 +188,8 @@ void check_bus(const ConfigNode& root, const std::string& url) {
 
 /// Throws ConfigError unless `engine` is the name of an engine or of a class in Python.
 void check_engine(const ConfigNode& root, const std::string& engine) {
-  static const std::vector<std::string> names{"box2d", "newton", "mujoco"};
+  static const std::vector<std::string> names{std::string(forward::kBox2d),
+                                              std::string(forward::kNewton), "mujoco"};
   static const std::regex python(R"(\w+(\.\w+)*:[A-Za-z_]\w*)");
   if (std::ranges::count(names, engine) > 0 || std::regex_match(engine, python)) return;
   throw ConfigError(find(root, "forward", "engine")->value.origin, "forward.engine",

@@ -1,6 +1,5 @@
 #include "core/tasks/task.hpp"
 
-#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -22,17 +21,10 @@
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 #include "train/bindings/fields.hpp"
+#include "train/bindings/vertices.hpp"
 
 namespace rtg::bindings {
 namespace {
-
-using Vertices = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
-
-Vertices vertices_of(const std::vector<Vector2d>& ring) {
-  Vertices out(static_cast<Eigen::Index>(ring.size()), 2);
-  for (Eigen::Index k = 0; k < out.rows(); ++k) out.row(k) = ring[static_cast<std::size_t>(k)];
-  return out;
-}
 
 std::vector<std::vector<Vertices>> outlines(const tasks::Task& task) {
   std::vector<std::vector<Vertices>> out;

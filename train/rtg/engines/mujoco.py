@@ -19,6 +19,8 @@ _SKIN = 0.025  # bodies in contact keep this far apart, as in Box2D
 _LAG = 0.0125  # of the robot behind its way, while it moves freely
 _ARC = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)  # a round corner is a polygon
 _STILL = np.zeros(2)
+_COLUMNS = ("x", "y", "theta", "value")  # names of MuJoCo's joints, after the number of the body
+_VALUE = 3
 _BATCH = 256  # pushes at a time, for the sake of memory
 
 
@@ -43,10 +45,12 @@ class _Model:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.unit = scene, scene.size
+        self._units = (self.unit, self.unit, 1.0)  # of x, y, θ
         self.kg = scene.bodies[0].mass
         self.step_s = scene.push_s / _STEPS
         self.advance = scene.stride / self.unit / _STEPS  # of the robot per step
-        self.coordinates: list[tuple[int, str]] = []  # of qpos: body and what of it
+        # Of qpos: the body, and 0 to 2 for its x, y or θ, or _VALUE for the value of its joint.
+        self.coordinates: list[tuple[int, int]] = []
         self._root = ElementTree.Element("mujoco")
         compiler = {"angle": "radian", "inertiafromgeom": "false"}
         ElementTree.SubElement(self._root, "compiler", compiler)
@@ -68,11 +72,11 @@ class _Model:
         self._children: dict[int, list[Joint]] = {}
         for joint in scene.joints:
             self._children.setdefault(joint.parent, []).append(joint)
-        children = {joint.child for joint in scene.joints}
+        self._joint_of = {joint.child: joint for joint in scene.joints}
+        self._roots = [i for i in range(len(scene.bodies)) if i not in self._joint_of]
         self._add_servo()
-        for i in range(len(scene.bodies)):
-            if i not in children:
-                self._add_root(world, i)
+        for i in self._roots:
+            self._add_root(world, i)
         self._add_contacts()
         self._root.append(self._actuators)
 
@@ -83,13 +87,11 @@ class _Model:
     def coordinates_of(self, states: Floats) -> Floats:
         """Returns qpos. [N, bodies, 3] -> [N, nq]"""
         out = np.empty((len(states), len(self.coordinates)))
-        joints = {joint.child: joint for joint in self.scene.joints}
-        for k, (i, name) in enumerate(self.coordinates):
-            if name == "value":
-                out[:, k] = self._value(joints[i], states)
+        for k, (i, column) in enumerate(self.coordinates):
+            if column == _VALUE:
+                out[:, k] = self._value(self._joint_of[i], states)
             else:
-                column = ("x", "y", "theta").index(name)
-                out[:, k] = states[:, i, column] / (1.0 if name == "theta" else self.unit)
+                out[:, k] = states[:, i, column] / self._units[column]
         return out
 
     def _value(self, joint: Joint, states: Floats) -> Floats:
@@ -106,15 +108,13 @@ class _Model:
         """Returns the states that qpos tells. Fixed bodies stay. [N, nq] -> [N, bodies, 3]"""
         states = before.copy()
         values = np.zeros((len(before), len(self.scene.bodies)))
-        for k, (i, name) in enumerate(self.coordinates):
-            if name == "value":
+        for k, (i, column) in enumerate(self.coordinates):
+            if column == _VALUE:
                 values[:, i] = coordinates[:, k]
             else:
-                column = ("x", "y", "theta").index(name)
-                states[:, i, column] = coordinates[:, k] * (1.0 if name == "theta" else self.unit)
-        for i in range(len(self.scene.bodies)):
-            if i not in {joint.child for joint in self.scene.joints}:
-                self._place_children(i, values, states)
+                states[:, i, column] = coordinates[:, k] * self._units[column]
+        for i in self._roots:
+            self._place_children(i, values, states)
         return states
 
     def _place_children(self, i: int, values: Floats, states: Floats) -> None:
@@ -162,7 +162,7 @@ class _Model:
             self._add_body(world, i, np.array([x, y]) / self.unit, theta, [])
             return
         joints = []
-        for name, axis in (("x", "1 0 0"), ("y", "0 1 0"), ("theta", "0 0 1")):
+        for name, axis in zip(_COLUMNS, ("1 0 0", "0 1 0", "0 0 1"), strict=False):
             kind = "hinge" if name == "theta" else "slide"
             joints.append({"name": f"{i} {name}", "type": kind, "axis": axis})
         self._add_body(world, i, _STILL, 0.0, joints)
@@ -182,7 +182,7 @@ class _Model:
         )
         for attributes in free:
             ElementTree.SubElement(node, "joint", attributes)
-            self.coordinates.append((i, attributes["name"].split()[1]))
+            self.coordinates.append((i, _COLUMNS.index(attributes["name"].split()[1])))
         if not body.fixed:
             mass = body.mass / self.kg
             moment = body.moment / (self.kg * self.unit**2)
