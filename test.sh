@@ -35,7 +35,7 @@ run_ctest() { # PRESET [CTEST_OPTION...]
 run_pytest() {
   say "pytest"
   (cd "$ROOT" && "$VENV/bin/python" -m pytest \
-    --numprocesses "$(nproc)" --dist loadfile)
+    --numprocesses "$(nproc)" --dist loadfile --no-loadscope-reorder)
 }
 
 coverage() {

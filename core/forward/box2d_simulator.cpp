@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -301,6 +302,11 @@ bool drive(World& table, const Path& path, int done) {
 }
 
 }  // namespace
+
+std::string Box2dSimulator::library_version() {
+  return std::to_string(b2_version.major) + "." + std::to_string(b2_version.minor) + "." +
+         std::to_string(b2_version.revision);
+}
 
 Box2dSimulator::Box2dSimulator(Scene scene, PushConfig push, PhysicsConfig physics)
     : Simulator(std::move(push)), scene_(std::move(scene)), physics_(physics) {}

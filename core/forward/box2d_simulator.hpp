@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/forward/simulator.hpp"
 
 namespace rtg::forward {
@@ -33,6 +35,9 @@ namespace rtg::forward {
 /// ends at its target.
 class Box2dSimulator final : public Simulator {
  public:
+  /// Returns the version of Box2D, as in "2.4.1".
+  static std::string library_version();
+
   /// All shapes of `scene` must be legal (polygon_defect() returns nothing), and bodies[0] movable.
   Box2dSimulator(Scene scene, PushConfig push, PhysicsConfig physics);
 

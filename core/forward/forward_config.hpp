@@ -15,6 +15,9 @@ struct ForwardConfig {
   /// kBox2d, kNewton, or an engine outside this library, which the caller brings along: "mujoco" or
   /// "module:Class", a class in Python.
   std::string engine{kBox2d};
+  /// Factor of the coefficients of friction. The reverse model keeps those of the task, so another
+  /// value than 1 is a model that is wrong by as much.
+  double friction = 1.0;
 
   bool is_built_in() const { return engine == kBox2d || engine == kNewton; }
 
@@ -23,6 +26,9 @@ struct ForwardConfig {
     v.text("engine", engine,
            "forward simulator of replays, training and evaluation; box2d, newton, mujoco, "
            "module:Class");
+    v.number("friction", friction, 0.0, 10.0,
+             "friction of the forward simulator, as a multiple of the task's; the reverse model "
+             "keeps the task's");
   }
 };
 

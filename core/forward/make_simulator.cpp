@@ -12,8 +12,10 @@ std::unique_ptr<const Simulator> make_simulator(const ForwardConfig& config, con
                                                 const PhysicsConfig& physics) {
   if (!config.is_built_in())
     throw std::invalid_argument("the engine '" + config.engine + "' is none of this library");
-  if (config.engine == kNewton) return std::make_unique<NewtonSimulator>(scene, push, physics);
-  return std::make_unique<Box2dSimulator>(scene, push, physics);
+  Scene actual = scene;
+  for (Body& body : actual.bodies) body.friction *= config.friction;
+  if (config.engine == kNewton) return std::make_unique<NewtonSimulator>(actual, push, physics);
+  return std::make_unique<Box2dSimulator>(actual, push, physics);
 }
 
 }  // namespace rtg::forward

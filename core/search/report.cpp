@@ -105,6 +105,7 @@ std::string to_json(const GenerationReport& r) {
   out["rejected_pushes"] = stats.rejected_pushes;
   out["units_given_up"] = r.units_given_up;
   out["units_from_journal"] = r.units_from_journal;
+  out["journal_bytes_dropped"] = r.journal_bytes_dropped;
   out["iterations_median"] = of_search(stats.iterations, 0.5);
   out["iterations_p90"] = of_search(stats.iterations, 0.9);
   out["pushing_converged"] = stats.pushing_iterations.size();

@@ -36,6 +36,7 @@ struct GenerationReport {
   std::string undrawn_reason = {};  // why most of stats.undrawn_goals were; empty without any
   long units_given_up = 0;          // job messages whose workers were lost, several times; over LCM
   long units_from_journal = 0;      // answered by an earlier process of the run
+  long journal_bytes_dropped = 0;   // torn, damaged or of other settings
   std::string rows_sha256 = {};     // digest of the stored transitions; empty if nobody took it
   double generate_wall_s = 0.0;
   double generate_cpu_s = 0.0;               // of this process alone, not of workers

@@ -44,6 +44,7 @@ int run(const program::Words& words) {
   });
   if (report) {
     report->units_from_journal = journal.units_found();
+    report->journal_bytes_dropped = journal.dropped_bytes();
     files::write_atomically(std::filesystem::path(words[2]) / "generation.json",
                             files::sealed_json(to_json(*report)));
     program::say("has found " + std::to_string(report->coverage.transitions) +

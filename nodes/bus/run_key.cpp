@@ -2,6 +2,7 @@
 
 #include <sodium.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +14,15 @@ namespace rtg::bus {
 namespace {
 
 constexpr std::size_t kLongestFile = 4096;  // bytes
+constexpr std::size_t kSecretDigits = 64;
+constexpr std::size_t kBeforeName = kSecretDigits + 1 + 2 * RunKey::kTagBytes + 1;  // characters
+
+std::string hex(std::span<const std::uint8_t> bytes) {
+  std::string digits(2 * bytes.size() + 1, '\0');
+  sodium_bin2hex(digits.data(), digits.size(), bytes.data(), bytes.size());
+  digits.pop_back();  // the final NUL
+  return digits;
+}
 
 }  // namespace
 
@@ -39,25 +49,26 @@ RunKey RunKey::read(const std::filesystem::path& file) {
       files::read_regular(file, kLongestFile, files::Readers::kOwnerAlone);
   if (!content.defect.empty())
     throw std::invalid_argument(file.string() + ": " + content.defect + legal);
+  // The file must be the one that write() makes of what stands in it.
   const std::string& text = content.text;
   Secret secret{};
-  std::size_t size = 0;
-  const char* end = text.data();
-  sodium_hex2bin(secret.data(), secret.size(), text.data(), text.size(), nullptr, &size, &end);
-  const auto digits = static_cast<std::size_t>(end - text.data());
-  const std::size_t line = text.find('\n');
-  if (size != secret.size() || text[digits] != ' ' || line != text.size() - 1 || digits + 1 == line)
-    throw std::invalid_argument(
-        file.string() +
-        ": is no key file; legal: a line of 64 hexadecimal digits, a space and the run's name");
-  return {secret, text.substr(digits + 1, line - digits - 1)};
+  sodium_hex2bin(secret.data(), secret.size(), text.data(), std::min(text.size(), kSecretDigits),
+                 nullptr, nullptr, nullptr);
+  const RunKey key(secret, text.size() > kBeforeName + 1
+                               ? text.substr(kBeforeName, text.size() - kBeforeName - 1)
+                               : std::string());
+  if (key.name_.empty() || key.name_.find('\n') != std::string::npos || key.line() != text)
+    throw std::invalid_argument(file.string() + ": is no key file, or has changed since" + legal);
+  return key;
 }
 
 void RunKey::write(const std::filesystem::path& file) const {
-  std::string text(2 * secret_.size() + 1, '\0');
-  sodium_bin2hex(text.data(), text.size(), secret_.data(), secret_.size());
-  text.back() = ' ';
-  files::write_atomically(file, text + name_ + "\n", 0600);
+  files::write_atomically(file, line(), 0600);
+}
+
+std::string RunKey::line() const {
+  const Tag check = tag("", {reinterpret_cast<const std::uint8_t*>(name_.data()), name_.size()});
+  return hex(secret_) + " " + hex(check) + " " + name_ + "\n";
 }
 
 RunKey::Tag RunKey::tag(std::string_view channel, std::span<const std::uint8_t> bytes) const {

@@ -18,8 +18,9 @@ std::int64_t run_id(const std::string& name);
 /// keyed BLAKE2b hash (RFC 7693) of 16 bytes over its channel and its bytes. LCM's decoders ignore
 /// these, so that lcm-spy and lcm-logger read the messages.
 ///
-/// A key file has one line, the key as 64 hexadecimal digits and the name of the run. It is read
-/// only if nobody but its owner can read it.
+/// A key file has one line: the key as 64 hexadecimal digits, the tag of the run's name on no
+/// channel, by which damage is seen, and that name. It is read only if nobody but its owner can
+/// read it.
 class RunKey {
  public:
   static constexpr std::size_t kTagBytes = 16;
@@ -46,6 +47,7 @@ class RunKey {
 
   RunKey(const Secret& secret, std::string name);
   Tag tag(std::string_view channel, std::span<const std::uint8_t> bytes) const;
+  std::string line() const;  // of its file
 
   Secret secret_;
   std::string name_;

@@ -57,6 +57,7 @@ class UnitJournal {
     const std::scoped_lock lock(mutex_);
     return journal_.size();
   }
+  std::int64_t dropped_bytes() const { return journal_.dropped_bytes(); }
   /// Return the number of units that find() has answered, and the CPU time of their results [s].
   long units_found() const {
     const std::scoped_lock lock(mutex_);

@@ -57,6 +57,7 @@ Journal::Journal(std::filesystem::path path, std::int64_t identity)
     places_[record->id] = end_;
     end_ += static_cast<std::int64_t>(kHeadBytes + record->bytes.size() + kDigestBytes);
   }
+  dropped_bytes_ = std::max<std::int64_t>(0, status.st_size - end_);
   cut();
 }
 

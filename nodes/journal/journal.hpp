@@ -46,6 +46,8 @@ class Journal {
 
   /// Returns the number of different ids.
   std::size_t size() const { return places_.size(); }
+  /// Returns how many bytes of the file the constructor has cut off.
+  std::int64_t dropped_bytes() const { return dropped_bytes_; }
 
  private:
   struct Record {
@@ -64,6 +66,7 @@ class Journal {
   std::vector<std::uint8_t> identity_;  // as in the file
   files::Descriptor file_;
   std::int64_t end_ = 0;                                   // of the last record
+  std::int64_t dropped_bytes_ = 0;
   std::unordered_map<std::int64_t, std::int64_t> places_;  // of records in the file, by id
 };
 

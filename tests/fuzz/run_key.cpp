@@ -26,8 +26,10 @@ void check(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 std::vector<Bytes> seeds() {
-  const std::string digits = "00112233445566778899aabbccddeeffFFEEDDCCBBAA99887766554433221100";
-  return {bytes_of(digits + " run\n"), bytes_of(digits + " two words\n"), bytes_of(digits + "\n")};
+  const std::string digits = "00112233445566778899aabbccddeeffffeeddccbbaa99887766554433221100";
+  return {bytes_of(digits + " b5e5343d620ccc46ff3699b7d3d44f92 run\n"),
+          bytes_of(digits + " b6e9cad6ff458c9ec31f506809dc725a two words\n"),
+          bytes_of(digits + "\n")};
 }
 
 }  // namespace rtg::fuzz

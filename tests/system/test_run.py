@@ -192,7 +192,7 @@ def wait_for_line(process, words):
 def test_a_signal_ends_a_run_and_all_of_its_processes(tmp_path, mode, number):
     folder = tmp_path / "run"
     process = start(*ENDLESS, *mode, "--out", folder)
-    wait_for_line(process, "tree ")
+    wait_for_line(process, ", layer ")
     process.send_signal(number)
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 1
@@ -204,7 +204,7 @@ def test_a_signal_ends_a_run_and_all_of_its_processes(tmp_path, mode, number):
 def test_killing_the_command_kills_all_of_its_processes(tmp_path):
     folder = tmp_path / "run"
     process = start(*ENDLESS, "--out", folder)
-    wait_for_line(process, "tree ")
+    wait_for_line(process, ", layer ")
     # the command, graph.sh, server, two workers, coordinator, trainer
     assert len(processes_of(folder)) == 7
     process.kill()
@@ -233,7 +233,7 @@ def test_a_killed_program_is_started_again_and_changes_nothing(
 ):
     folder = tmp_path / "disturbed"
     process = start(*LONG, "--out", folder)
-    wait_for_line(process, "tree ")
+    wait_for_line(process, ", layer ")
     kill(folder, program)
     out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, err
@@ -246,7 +246,7 @@ def test_a_killed_program_is_started_again_and_changes_nothing(
 def test_a_generation_killed_with_its_command_goes_on(tmp_path, undisturbed, mode):
     folder = tmp_path / "disturbed"
     process = start(*LONG, *mode, "--out", folder)
-    wait_for_line(process, "tree ")
+    wait_for_line(process, ", layer ")
     for pid in processes_of(folder):
         os.kill(pid, signal.SIGKILL)
     process.communicate(timeout=PATIENCE)
@@ -261,7 +261,7 @@ def test_a_generation_killed_with_its_command_goes_on(tmp_path, undisturbed, mod
 def test_without_trainer_the_run_ends(tmp_path):
     folder = tmp_path / "run"
     process = start(*ENDLESS, "--out", folder)
-    wait_for_line(process, "tree ")
+    wait_for_line(process, ", layer ")
     kill(folder, "rtg.learn.trainer")
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 1

@@ -64,6 +64,7 @@ std::string generate_in_process(const config::Config& config, const nb::object& 
   search::GenerationReport report = generate(config.task, config.search, seed, seams);
   if (known) {
     report.units_from_journal = known->units_found();
+    report.journal_bytes_dropped = known->dropped_bytes();
     report.generate_cpu_s += known->cpu_s_found();
   }
   return to_json(report);

@@ -1,3 +1,4 @@
+#include "core/forward/box2d_simulator.hpp"
 #include "train/bindings/bindings.hpp"
 
 NB_MODULE(_core, module) {
@@ -6,6 +7,7 @@ NB_MODULE(_core, module) {
       "The C++ core of RTG: configuration, tasks, the true dynamics, generation, "
       "values of headings, the bus.";
   module.attr("PROCESSOR") = RTG_PROCESSOR;  // what -march was given
+  module.attr("BOX2D_VERSION") = rtg::forward::Box2dSimulator::library_version().c_str();
   rtg::bindings::bind_scene(module);
   rtg::bindings::bind_task(module);
   rtg::bindings::bind_config(module);

@@ -26,6 +26,7 @@ GenerationReport filled() {
   r.stats.replays = 24;
   r.units_given_up = 23;
   r.units_from_journal = 26;
+  r.journal_bytes_dropped = 28;
   r.rows_sha256 = "ab01";
   r.stats.iterations = {31, 29, 30};
   r.stats.pushing_iterations = {32, 35, 33, 34};
@@ -48,7 +49,7 @@ TEST(Report, EveryFieldIsWrittenUnderItsName) {
       R"("line_search_failed":15,"singular":16,"non_finite":17,)"
       R"("illegal_starts":20,"goal_draws":27,"undrawn_goals":25,)"
       R"("undrawn_reason":"task.goal.0","unsettled_goals":21,"replays":24,"rejected_pushes":22,)"
-      R"("units_given_up":23,"units_from_journal":26,)"
+      R"("units_given_up":23,"units_from_journal":26,"journal_bytes_dropped":28,)"
       R"("iterations_median":30.0,"iterations_p90":31.0,"pushing_converged":4,)"
       R"("pushing_iterations_median":34.0,"pushing_iterations_p90":35.0,)"
       R"("replay_gap_median":0.0625,"replay_gap_p90":0.375,)"

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "nodes/files/regular_file.hpp"
 #include "tests/support/folder.hpp"
 
 namespace rtg::bus {
@@ -35,7 +36,8 @@ TEST(RunKey, TwoKeysOfOneNameDiffer) {
 TEST(RunKey, TheTagIsKeyedBlake2bOverChannelAndBytes) {
   const testing::Folder folder;
   const std::filesystem::path file = folder.path / "run.key";
-  std::ofstream(file) << std::string(64, '0') << " test\n";
+  // hashlib.blake2b(b"\0test", key=bytes(32), digest_size=16)
+  std::ofstream(file) << std::string(64, '0') << " 482e307ddd8ca58ea83ba528b3038184 test\n";
   chmod(file.c_str(), 0600);
   Bytes bytes{1, 2, 3};
   RunKey::read(file).seal("TAIL", bytes);
@@ -57,29 +59,39 @@ std::string refusal(const std::filesystem::path& file) {
 
 TEST(RunKey, FilesThatAreNoKeysOrNoSecretsAreNamed) {
   const testing::Folder folder;
-  const std::string hex(64, 'a');
   const std::filesystem::path file = folder.path / "run.key";
   const std::string legal = "; legal: the key file of a run, which its owner alone can read";
   EXPECT_EQ(refusal(file), file.string() + ": no such file" + legal);
   EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is no regular file" + legal);
+  RunKey::random("test").write(file);
+  const std::string right = files::read_regular(file, 4096).text;
   for (const std::string& text :
-       {std::string(), hex, hex + "\n", hex + " \n", hex + " test", "a" + hex + " test\n",
-        hex.substr(1) + " test\n", hex + " test\nmore\n", "xyz" + hex + " test\n"}) {
+       {std::string(), right.substr(0, 64), right.substr(0, 98), right.substr(0, 97) + "\n",
+        right.substr(0, right.size() - 1), right + "more\n", "a" + right, right.substr(1)}) {
     std::ofstream(file) << text;
-    chmod(file.c_str(), 0600);
-    EXPECT_EQ(refusal(file),
-              file.string() +
-                  ": is no key file; legal: a line of 64 hexadecimal digits, a space and the run's "
-                  "name")
+    EXPECT_EQ(refusal(file), file.string() + ": is no key file, or has changed since" + legal)
         << text;
   }
-  std::ofstream(file) << hex << " test\n";
+  std::ofstream(file) << right;
   EXPECT_EQ(refusal(file), "");
   chmod(file.c_str(), 0640);
   EXPECT_EQ(refusal(file), file.string() +
                                ": others can read or write it, or it is another user's (chmod 600 "
                                "closes it)" +
                                legal);
+}
+
+TEST(RunKey, EveryFlippedBitOfAFileIsSeen) {
+  const testing::Folder folder;
+  const std::filesystem::path file = folder.path / "run.key";
+  RunKey::random("a run").write(file);
+  const std::string right = files::read_regular(file, 4096).text;
+  for (std::size_t bit = 0; bit < 8 * right.size(); ++bit) {
+    std::string text = right;
+    text[bit / 8] = static_cast<char>(text[bit / 8] ^ 1 << bit % 8);
+    std::ofstream(file) << text;
+    EXPECT_NE(refusal(file), "") << bit;
+  }
 }
 
 }  // namespace

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
 
+#include "nodes/bus/run_key.hpp"
 #include "nodes/jobs/job_dispatcher.hpp"
 #include "nodes/jobs/job_inbox.hpp"
+#include "nodes/jobs/unit_table.hpp"
 #include "tests/support/faulty_network.hpp"
 #include "tests/support/seeds.hpp"
 
@@ -22,9 +25,36 @@ struct Faults {
   double kills = 0.0005, pauses = 0.0003;  // of a worker, per step
   double hangs = 0.0005;                   // share of the units that a worker never answers
   double forgeries = 0.02;                 // messages of strangers, per step
-  bool authenticated = true;               // false: forged answers are believed
-  bool at_barrier = true;                  // false: answers count in the order of their arrival
+  bool authenticated = true;               // false: the tags of answers are not checked
+  bool at_barrier = true;                  // false: answers are taken in the order of their arrival
 };
+
+/// A unit has one job, whose number is the unit's id.
+struct Job {
+  int number = 0;
+};
+
+JobId unit_id(std::span<const Job> jobs, std::int64_t /*config*/) { return jobs.front().number; }
+
+struct Service {
+  using Job = jobs::Job;
+  using Result = int;
+  static constexpr UnitLimit kUnit{.jobs = 1, .states = 1};
+};
+
+struct Answer {
+  JobId job = 0;
+  int result = 0;
+};
+
+constexpr const char* kAnswers = "RTG_ANSWERS";
+
+std::vector<std::uint8_t> sealed(const Answer& answer, const bus::RunKey& key) {
+  const auto* begin = reinterpret_cast<const std::uint8_t*>(&answer);
+  std::vector<std::uint8_t> bytes(begin, begin + sizeof(answer));
+  key.seal(kAnswers, bytes);
+  return bytes;
+}
 
 struct Worker {
   WorkerId id = 0;
@@ -43,10 +73,9 @@ class Simulation {
 
   /// Returns the answers to `jobs`, as the search gets them: in the order of their jobs. Empty if
   /// it took too long.
-  std::vector<int> solve(const std::vector<JobId>& jobs) {
-    accepted_.clear();
-    order_.clear();
-    dispatcher_.submit(jobs);
+  std::vector<int> solve(const std::vector<Job>& jobs) {
+    arrived_.clear();
+    dispatcher_.submit(units_.deal(jobs, {.bodies = 1, .actions = 1}, 0));
     for (const double end = now_ + 3000.0; !dispatcher_.finished();) {
       now_ += step();
       if (now_ > end) return {};
@@ -58,9 +87,7 @@ class Simulation {
       for (const auto& send : dispatcher_.due(now_)) deliver(send);
       if (rng_.uniform(0, 1) < faults_.pauses) paused_until_ = now_ + rng_.uniform(0.0, 10.0);
     }
-    std::vector<int> answers;
-    for (const JobId id : faults_.at_barrier ? jobs : order_) answers.push_back(accepted_[id]);
-    return answers;
+    return faults_.at_barrier ? units_.take() : arrived_;
   }
 
   const JobDispatcher& dispatcher() const { return dispatcher_; }
@@ -115,20 +142,32 @@ class Simulation {
     });
   }
 
-  void report(JobId job, int answer) {
-    network_.send(now_, [this, job, answer] { hear([=, this] { accept(job, answer); }); });
-  }
+  void report(JobId job, int result) { send(sealed({job, result}, key_)); }
 
-  void accept(JobId job, int answer) {
-    if (dispatcher_.on_result(job, now_) != JobDispatcher::Verdict::kAccepted) return;
-    EXPECT_TRUE(accepted_.emplace(job, answer).second);
-    order_.push_back(job);
-  }
-
-  void forge(const std::vector<JobId>& jobs) {
+  void forge(const std::vector<Job>& jobs) {
     if (rng_.uniform(0, 1) >= faults_.forgeries) return;
-    const JobId job = jobs[static_cast<std::size_t>(rng_.below(static_cast<int>(jobs.size())))];
-    if (!faults_.authenticated) report(job, -1);
+    const auto at = static_cast<std::size_t>(rng_.below(static_cast<int>(jobs.size())));
+    send(sealed({jobs[at].number, -1}, strangers_));
+  }
+
+  void send(std::vector<std::uint8_t> bytes) {
+    network_.send(now_, [this, bytes = std::move(bytes)] { hear([=, this] { receive(bytes); }); });
+  }
+
+  void receive(const std::vector<std::uint8_t>& bytes) {
+    const auto message =
+        faults_.authenticated ? key_.opened(kAnswers, bytes) : bus::without_tag(bytes);
+    if (!message) return;
+    Answer answer;
+    std::memcpy(&answer, message->data(), sizeof(answer));
+    accept(answer);
+  }
+
+  void accept(const Answer& answer) {
+    if (!units_.contains(answer.job)) return;
+    if (dispatcher_.on_result(answer.job, now_) != JobDispatcher::Verdict::kAccepted) return;
+    units_.store(answer.job, std::array{answer.result});
+    arrived_.push_back(answer.result);
   }
 
   /// Lets an event reach the coordinator, now or when it goes on.
@@ -151,8 +190,9 @@ class Simulation {
   std::array<std::unique_ptr<Worker>, 3> workers_;
   JobDispatcher dispatcher_;
   std::vector<std::function<void()>> waiting_;  // until the coordinator goes on
-  std::map<JobId, int> accepted_;
-  std::vector<JobId> order_;
+  UnitTable<Service> units_;
+  std::vector<int> arrived_;  // answers, in the order in which they came
+  bus::RunKey key_ = bus::RunKey::random("run"), strangers_ = bus::RunKey::random("run");
 };
 
 /// Counts of many simulations, each of two batches of twelve units.
@@ -167,11 +207,13 @@ Outcome outcome(const std::vector<std::uint64_t>& seeds, const Faults& faults) {
   for (const std::uint64_t seed : seeds) {
     Simulation simulation(seed, faults);
     bool right = true;
-    for (const JobId batch : {0, 100}) {
-      std::vector<JobId> jobs(12);
-      std::iota(jobs.begin(), jobs.end(), batch);
+    for (const int batch : {0, 100}) {
+      std::vector<Job> jobs;
       std::vector<int> expected;
-      for (const JobId id : jobs) expected.push_back(Simulation::answer_to(id));
+      for (int number = batch; number < batch + 12; ++number) {
+        jobs.push_back({number});
+        expected.push_back(Simulation::answer_to(number));
+      }
       right = right && simulation.solve(jobs) == expected;
       found.poisoned += static_cast<long>(simulation.dispatcher().poisoned().size());
     }
@@ -198,7 +240,7 @@ TEST(JobProtocol, GivesNothingUpAtFourTimesTheKills) {
   EXPECT_EQ(found.poisoned, 0);
 }
 
-// What the hash behind each message and the barrier before the search goes on are there for.
+// What the tag behind each message and the barrier before the search goes on are there for.
 TEST(JobProtocol, WithoutAuthenticationForgeriesCount) {
   Faults faults;
   faults.authenticated = false;

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <string>
@@ -68,7 +69,13 @@ TEST_F(JournalTest, TornAtAnyByteKeepsTheRecordsBeforeAndGrowsOn) {
   const std::string whole = text();
   for (std::size_t cut = 0; cut < whole.size(); ++cut) {
     set_text(whole.substr(0, cut));
-    Journal(path, kIdentity).append(10, Bytes{6, 6});
+    {
+      Journal torn(path, kIdentity);
+      const auto kept = std::ranges::upper_bound(ends, cut) - ends.begin();
+      const std::size_t end = kept > 0 ? ends[static_cast<std::size_t>(kept - 1)] : cut;
+      EXPECT_EQ(torn.dropped_bytes(), static_cast<std::int64_t>(cut - end)) << cut;
+      torn.append(10, Bytes{6, 6});
+    }
     const Journal journal(path, kIdentity);
     for (std::size_t k = 0; k < kRecords.size(); ++k) {
       const auto& [id, bytes] = kRecords[k];

@@ -1,5 +1,6 @@
 """The seam of forward simulators: what a user's class is given, and what becomes of its answers."""
 
+import hashlib
 import pickle
 from pathlib import Path
 
@@ -7,8 +8,10 @@ import numpy as np
 import pytest
 import rtg
 from rtg import cli
-from rtg.engines import EngineError, Scene, simulator
+from rtg.engines import EngineError, Scene, identity, simulator
 from rtg.errors import UserError
+from rtg.run import run_args
+from rtg.run.plan import make_plan
 
 HERE = Path(__file__).parent
 
@@ -53,6 +56,25 @@ def test_a_simulator_can_be_pickled() -> None:
     other = pickle.loads(pickle.dumps(one))
     push = task.inner(task.start()[None]), np.array([3])
     assert (one.push(*push)[0] == other.push(*push)[0]).all()
+
+
+def test_the_identity_is_the_version_or_else_the_source() -> None:
+    digest = hashlib.sha256((HERE / "toy_engines.py").read_bytes()).hexdigest()[:12]
+    assert identity(of("Ghost").config) == f"toy_engines:Ghost sha256:{digest}"
+    assert identity(of("Versioned").config) == "toy_engines:Versioned 1.2"
+    assert identity(rtg.load_task("maze", ["forward.engine=newton"]).config) == "newton"
+
+
+def test_what_another_engine_says_is_no_data_for_a_run(tmp_path: Path) -> None:
+    tiny = str(HERE.parents[2] / "config/tests/tiny.yaml")
+    newton, box2d = (str(tmp_path / name) for name in ("newton", "box2d"))
+    words = [tiny, "--in-process", "--out"]
+    engine = ["--set", "forward.engine=newton"]
+    assert cli.main([*words, newton, "--no-train", *engine]) == 0
+    with pytest.raises(UserError, match="are of the forward simulator newton, and this run's is "):
+        make_plan(run_args.parse([*words, box2d, "--data", newton]))
+    assert not Path(box2d).exists()
+    make_plan(run_args.parse([*words, box2d, "--data", newton, *engine]))
 
 
 def test_a_failure_has_the_users_traceback_and_the_state() -> None:
@@ -125,6 +147,21 @@ def test_a_scene_is_in_metres_and_kilograms(task: str) -> None:
         x, y = joint.axis
         held = np.array([[-y, x]]) if joint.type == "prismatic" else np.eye(2)
         np.testing.assert_allclose(held @ (ends[1] - ends[0]), 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize(("engine", "status"), [("Unmade", 1), ("NoEngine", 2)])
+def test_a_run_whose_engine_cannot_be_made_leaves_no_folder(
+    tmp_path: Path, engine: str, status: int
+) -> None:
+    setting = ["--set", f"forward.engine=toy_engines:{engine}"]
+    assert cli.main(["gathering", *setting, "--out", str(tmp_path / "run")]) == status
+    assert not (tmp_path / "run").exists()
+
+
+def test_check_makes_the_engine_and_names_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["check", "gathering", "--set", "forward.engine=toy_engines:Versioned"]) == 0
+    assert "\nforward simulator: toy_engines:Versioned 1.2\n" in capsys.readouterr().out
+    assert cli.main(["check", "gathering", "--set", "forward.engine=toy_engines:NoEngine"]) == 2
 
 
 def test_a_run_with_a_broken_engine_ends_with_its_traceback(

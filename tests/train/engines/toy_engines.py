@@ -16,6 +16,10 @@ class Ghost:
         return ends, np.ones(len(states), bool)
 
 
+class Versioned(Ghost):
+    version = "1.2"
+
+
 class Finicky(Ghost):
     """Cannot simulate pushes to the left."""
 

@@ -109,7 +109,7 @@ def test_what_it_took_is_written_down(tmp_path: Path, monkeypatch: pytest.Monkey
 def test_the_time_of_all_workers_counts() -> None:
     def plan(workers: int) -> planning.Plan:
         config = _core.Config.from_file(TINY, [f"run.workers={workers}", "search.depth=4"])
-        return planning.plan(config, config.task.start)
+        return planning.plan(config, config.task.start, None)
 
     one, two = plan(1), plan(2)
     assert two.pushes == one.pushes > 0 and two.wall_s > 0
@@ -131,12 +131,12 @@ def test_a_signal_stops_it_between_starts_and_it_goes_on(
             super()._handle(*words)
             heard.set()
 
-    def noted(config: _core.Config, start: np.ndarray) -> Plan:
+    def noted(config: _core.Config, start: np.ndarray, replay: None) -> Plan:
         asked.append(start)
         if len(asked) == 3:
             os.kill(os.getpid(), number)
             assert heard.wait(60.0)  # the main thread hears it
-        return search(config, start)
+        return search(config, start, replay)
 
     monkeypatch.setattr(planning, "plan", noted)
     monkeypatch.setattr(trainer, "Interrupts", Hearing)

@@ -39,7 +39,13 @@ def generated(journal=None, kill_at=-1, settings=LONG):
 
 
 def without_times(report):
-    gone = ("generation_stages", "units_from_journal", "reverse_cpu_s", "replay_cpu_s")
+    gone = (
+        "generation_stages",
+        "units_from_journal",
+        "journal_bytes_dropped",
+        "reverse_cpu_s",
+        "replay_cpu_s",
+    )
     gone += ("generate_cpu_s", "generate_wall_s")
     return {
         k: v for k, v in report.items() if not k.endswith(("cpu_s", "wall_s")) and k not in gone
@@ -77,6 +83,18 @@ def test_the_journal_of_another_generation_is_not_used(tmp_path, setting):
     generated(journal)
     _, report, _ = generated(journal, settings=[*LONG, setting])
     assert report["units_from_journal"] == 0
+
+
+def test_a_damaged_journal_is_told_and_costs_no_row(tmp_path):
+    journal = tmp_path / run_folder.JOURNAL_FILE
+    expected, _, _ = generated(journal, settings=[])
+    content = bytearray(journal.read_bytes())
+    content[len(content) // 2] ^= 1
+    journal.write_bytes(content)
+    found, report, _ = generated(journal, settings=[])
+    np.testing.assert_array_equal(found[0], expected[0])
+    assert report["units_from_journal"] > 0
+    assert 0 < report["journal_bytes_dropped"] <= len(content)
 
 
 def plan_of(folder, *words):

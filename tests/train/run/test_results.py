@@ -103,6 +103,8 @@ def test_of_the_data_and_of_q_the_words_say_what_predicts_learning():
     assert said[2] == "rank correlation of Q with the simulator, over all headings: 0.76"
     without_rank = {**SUMMARY, "q_rank_correlation": None}
     assert len(results.summary_text(plan, without_rank).splitlines()) == 3
+    torn = results.summary_text(plan, {**SUMMARY, "journal_bytes_dropped": 1200}).splitlines()
+    assert "generation.journal: 1,200 bytes were torn" in torn[-2]
 
 
 def test_what_falls_short_is_the_last_word_before_the_folder(tmp_path):

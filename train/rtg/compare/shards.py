@@ -89,7 +89,7 @@ def merge(run: Path, shards: Sequence[Path]) -> None:
     Raises UserError if files of the shards are missing or damaged.
     """
     config = _core.Config.from_file(run / "config.yaml")
-    versions.write(run)
+    versions.write(run, config)
     recorder = Recorder(config)
     for shard in shards:
         found = dataset.read(shard / "transitions.npz", config.task)

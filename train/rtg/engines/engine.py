@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib
+import inspect
 import traceback
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -17,6 +20,10 @@ from rtg.errors import RunError, UserError
 
 Integers = NDArray[np.int64]
 _OURS = {"mujoco": "rtg.engines.mujoco:MuJoCo"}
+ENGINES = ("box2d", "newton", *_OURS)  # which need no class of the user's
+
+
+Replay = Callable[[Floats, Integers], tuple[Floats, Bools]]
 
 
 class EngineError(RunError):
@@ -26,7 +33,9 @@ class EngineError(RunError):
 class Engine(Protocol):
     """What a class must offer to be a `forward.engine: module:Class`.
 
-    It holds no state of an episode: equal arguments give equal results, in whatever order.
+    It holds no state of an episode: equal arguments give equal results, in whatever order. It may
+    have an attribute `version`, a text that changes whenever results do; without one, the source
+    file of the class serves as such.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -67,6 +76,7 @@ class _Outer:
         self._name: str = config.forward.engine
         made = _class_of(self._name)
         self._engine: Engine = self._guarded(lambda: made(Scene(config)), "when it was made")
+        self.version: str = getattr(self._engine, "version", "") or _source_digest(made)
 
     def __reduce__(self) -> tuple[Callable[[_core.Config], Simulator], tuple[_core.Config]]:
         return simulator, (self._config,)
@@ -141,6 +151,15 @@ def _lines(error: BaseException) -> str:
     return "".join(traceback.format_exception(type(error), error, trace)).rstrip()
 
 
+def _source_digest(made: Callable[[Scene], Engine]) -> str:
+    """Returns the beginning of the SHA-256 of the file of a class; "?" if it has none."""
+    try:
+        source = Path(inspect.getfile(made)).read_bytes()
+    except (TypeError, OSError):
+        return "?"
+    return f"sha256:{hashlib.sha256(source).hexdigest()[:12]}"
+
+
 def _class_of(name: str) -> Callable[[Scene], Engine]:
     """Returns the class that `name` stands for. Raises UserError if there is none."""
     module, _, made = _OURS.get(name, name).partition(":")
@@ -177,8 +196,17 @@ def simulator(config: _core.Config) -> Simulator:
     return _Outer(config)
 
 
-def replay_function(
-    config: _core.Config,
-) -> Callable[[Floats, Integers], tuple[Floats, Bools]] | None:
+def identity(config: _core.Config) -> str:
+    """Returns the name and version of the forward simulator that a configuration names.
+
+    What simulators of different identities say is not mixed. Raises as simulator() does.
+    """
+    name: str = config.forward.engine
+    if config.has_built_in_engine:
+        return f"{name} {_core.BOX2D_VERSION}" if name == "box2d" else name
+    return f"{name} {_Outer(config).version}"
+
+
+def replay_function(config: _core.Config) -> Replay | None:
     """Returns what the core is to ask for replays; None if the engine is built in."""
     return None if config.has_built_in_engine else simulator(config).push

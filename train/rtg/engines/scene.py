@@ -73,7 +73,7 @@ class Scene:
                 [Part(vertices / m, radius / m) for vertices, radius in b.parts],
                 b.mass / kg,
                 b.moment / (kg * m * m),
-                b.friction,
+                b.friction * config.forward.friction,
                 b.fixed,
             )
             for b in bodies

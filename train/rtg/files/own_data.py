@@ -127,16 +127,19 @@ def read(path: Path, task: _core.Task) -> OwnData:
     """
     file = file_of(path)
     arrays = _arrays(file)
-    kind, name = "npz", file.name
+    origin = {"format": "npz", "name": file.name}
     if arrays is None:
-        kind, name = "run", f"{file.resolve().parent.name}/{file.name}"
+        folder = file.resolve().parent
+        origin = {"format": "run", "name": f"{folder.name}/{file.name}"}
+        if engine := versions.generator(folder).get(versions.ENGINE_KEY):
+            origin[versions.ENGINE_KEY] = engine
     try:
         rows = rows_in_metres(task, **arrays) if arrays else _rows_of_run(file, task)
     except UserError:
         raise
     except ValueError as error:
         raise UserError(f"{file}: {error}") from None
-    return OwnData(rows, {"format": kind, "name": name, "sha256": versions.digest(file)})
+    return OwnData(rows, {**origin, "sha256": versions.digest(file)})
 
 
 def figures(task: _core.Task, rows: Rows) -> dict[str, Any]:
@@ -154,7 +157,7 @@ def figures(task: _core.Task, rows: Rows) -> dict[str, Any]:
 
 def store(run: Path, config: _core.Config, own: OwnData) -> None:
     """Makes the transitions those of a run: transitions.npz, generation.json, versions.json."""
-    versions.write(run, {"data": own.origin})
+    versions.write(run, config, {"data": own.origin})
     recorder = Recorder(config)
     recorder.add(own.rows)
     counts = {

@@ -12,11 +12,12 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-from rtg import _core, paths
+from rtg import _core, engines, paths
 from rtg.errors import UserError
 from rtg.files import run_folder
 
 FILE = "versions.json"
+ENGINE_KEY = "forward_engine"
 _REVISION_KEYS = ("git_revision", "git_modified")
 _PYTHON_PACKAGES = ("torch", "gymnasium", "numpy", "lcm")
 _DEBIAN_PACKAGES = (
@@ -101,6 +102,17 @@ def check_seal(path: Path) -> None:
         )
 
 
+def check_engine(run: Path, config: _core.Config) -> None:
+    """Raises UserError if another forward simulator than that of `config` has worked on the run."""
+    file = run / FILE
+    before, now = run_folder.read_json(file).get(ENGINE_KEY), engines.identity(config)
+    if before not in (None, now):
+        raise UserError(
+            f"{file}: the run was begun with the forward simulator {before}, and this is {now}; "
+            f"legal: {before}, or a new run"
+        )
+
+
 def generator(run: Path) -> dict[str, Any]:
     """Returns the versions of the program that generated the transitions of the run.
 
@@ -110,8 +122,11 @@ def generator(run: Path) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
-def versions() -> dict[str, Any]:
-    """Returns the versions of this program and its machine; None where a value is unknown."""
+def versions(config: _core.Config) -> dict[str, Any]:
+    """Returns the versions of this program, its machine and the forward simulator.
+
+    None stands where a value is unknown.
+    """
     return {
         **dict(zip(_REVISION_KEYS, _revision(), strict=True)),
         "python": platform.python_version(),
@@ -120,12 +135,13 @@ def versions() -> dict[str, Any]:
         "processor": _processor(),
         "instruction_set": _core.PROCESSOR,
         "memory_gib": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
+        ENGINE_KEY: engines.identity(config),
         "packages": {name: importlib.metadata.version(name) for name in _PYTHON_PACKAGES},
         "debian": {name: _debian_version(name) for name in _DEBIAN_PACKAGES},
     }
 
 
-def write(run: Path, made_by: dict[str, Any] | None = None) -> None:
+def write(run: Path, config: _core.Config, made_by: dict[str, Any] | None = None) -> None:
     """Writes versions.json of a run that this program begins or resumes. The file holds:
 
     - the versions of this program;
@@ -134,9 +150,10 @@ def write(run: Path, made_by: dict[str, Any] | None = None) -> None:
 
     Raises UserError if the previous versions.json is damaged.
     """
-    found, before = versions(), run_folder.read_json(run / FILE)
+    found, before = versions(config), run_folder.read_json(run / FILE)
     if made_by is None:
-        made_by = {key: found[key] for key in _REVISION_KEYS} | {"core_sha256": core_digest()}
+        made_by = {key: found[key] for key in (*_REVISION_KEYS, ENGINE_KEY)}
+        made_by["core_sha256"] = core_digest()
     begun_by, last = before.get("begun_by", []), commit(before)
     if last not in (None, commit(found)):
         begun_by = [*begun_by, last]

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rtg import _core, errors
-from rtg.engines import replay_function
+from rtg.engines import Replay, replay_function
 from rtg.files import checkpoint, run_folder
 from rtg.learn import policy_file
 from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, held_out_starts
@@ -33,14 +33,14 @@ class Plan(NamedTuple):
     cpu_s: float  # of all workers
 
 
-def plan(config: _core.Config, start: Floats) -> Plan:
-    """Searches for a plan from `start` [bodies, 3] and measures its cost.
+def plan(config: _core.Config, start: Floats, replay: Replay | None) -> Plan:
+    """Searches for a plan from `start` [bodies, 3] and measures its cost. `replay`: of the engine.
 
     Equal arguments give equal plans, except for the times.
     """
     with _SEARCH_LOCK:
         began, cpu = time.monotonic(), time.process_time()
-        states, pushes = _core.plan(config, start[None], replay_function(config))
+        states, pushes = _core.plan(config, start[None], replay)
         return Plan(states, pushes, time.monotonic() - began, time.process_time() - cpu)
 
 
@@ -69,6 +69,7 @@ class Planning:
         self.discount = config.learner_discount
         self.starts = held_out_starts(config, FINAL_SEED)
         self.plans: list[Plan] = []  # one for each start so far
+        self._replay = replay_function(config)
         self.log = TrainingLog(folder)
         self.runs = 1  # number of runs in this process
         self.scheduled_interactions = 0  # number of interactions, as in Training
@@ -85,7 +86,7 @@ class Planning:
         del source, record
         self._display()
         while not self.done and not stop():
-            self.plans.append(plan(self.config, self.starts[len(self.plans)]))
+            self.plans.append(plan(self.config, self.starts[len(self.plans)], self._replay))
             self._save()
             self._display()
         return self.done

@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
+from rtg.engines import ENGINES
+from rtg.errors import UserError
 from rtg.learn.evaluation import FINAL_SEED, Values, evaluate
 
 Floats = NDArray[np.float64]
@@ -170,6 +172,9 @@ def variants(config: _core.Config) -> list[Variant]:
     for damping in _COASTING:
         settings = ("physics.inertia=true", f"physics.damping={damping}")
         found.append(Variant("coasting", f"damping {damping}", settings))
+    for engine in ENGINES:
+        if engine != config.forward.engine:
+            found.append(Variant("simulator", engine, (f"forward.engine={engine}",)))
     return sorted(found, key=lambda variant: [v.group for v in found].index(variant.group))
 
 
@@ -185,7 +190,7 @@ def _seen(task: _core.Task, noise: float) -> Callable[[Floats], NDArray[np.float
     return observe
 
 
-def _shortened(error: _core.ConfigError) -> str:
+def _shortened(error: Exception) -> str:
     """Returns the key and what is wrong with it, without the place and what is legal."""
     parts = re.search(r"key '(.*?)': (.*?); legal: ", str(error))
     words = ": ".join(parts.groups()) if parts else str(error)
@@ -207,5 +212,8 @@ def evaluate_variant(
         ]
     )
     observe = _seen(config.task, variant.noise)
-    found = evaluate(changed, values, starts, config.learner_discount, observe)
+    try:
+        found = evaluate(changed, values, starts, config.learner_discount, observe)
+    except UserError as error:  # an extra that is not installed
+        return Row(variant, None, None, _shortened(error))
     return Row(variant, float(found.success.mean()), float(found.length.mean()))

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rtg import _core
+from rtg import _core, engines
 from rtg.errors import UserError
 from rtg.files import run_folder
 from rtg.run.run_args import Override
@@ -83,5 +83,10 @@ def _settings(text: str) -> list[tuple[str, str]]:
 
 
 def check(file: Path, overrides: Sequence[Override] = ()) -> str:
-    """Checks a task file; returns its content in human-readable text. Raises UserError."""
-    return f"{file}: legal\n{load(file, overrides).description}"
+    """Checks a task file and its forward simulator; returns their content in words.
+
+    Raises UserError, or EngineError if the simulator cannot be made.
+    """
+    config = load(file, overrides)
+    simulator = f"forward simulator: {engines.identity(config)}"
+    return f"{file}: legal\n{config.description}{simulator}\n"

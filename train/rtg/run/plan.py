@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rtg import _core
+from rtg import _core, engines
 from rtg.bus.bus import defect
 from rtg.errors import UserError
 from rtg.files import minari_data, own_data, run_folder, versions
@@ -134,6 +134,16 @@ def _read_own_data(word: str, task: _core.Task) -> OwnData:
     return minari_data.read(word, folder, task)
 
 
+def _check_engine(own: OwnData, data: str | None, engine: str) -> None:
+    """Raises UserError if own data are those of a run with another forward simulator."""
+    other = own.origin.get(versions.ENGINE_KEY, engine)
+    if other != engine:
+        raise UserError(
+            f"--data {data}: its transitions are of the forward simulator {other}, and this run's "
+            f"is {engine}; legal: the same (--set forward.engine={other.split()[0]})"
+        )
+
+
 def _fixed_values(config: _core.Config, has_checkpoint: bool) -> dict[str, Any]:
     """Returns, by "section.key", the values that must not change when the run is resumed.
 
@@ -198,9 +208,13 @@ def make_plan(args: RunArgs) -> RunPlan:
     if args.resume:
         _check_resumed(args.file, config)
         _check_stored(args.file.parent, config)
+        versions.check_engine(args.file.parent, config)
+    engine = engines.identity(config)  # fails here, before there is a folder
     check(config, args.train)
     _check_search(config, overrides, args.data)
     own = None if args.data is None else _read_own_data(args.data, config.task)
+    if own is not None:
+        _check_engine(own, args.data, engine)
     notes = []
     needs_bus = config.train.offline and not config.run.in_process and own is None
     if needs_bus and (why := defect(config.run.bus)):
@@ -221,5 +235,5 @@ def make_plan(args: RunArgs) -> RunPlan:
         run_folder.write_config(folder / "config.yaml", config.yaml)
     plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes), args.sinks)
     if own is None:
-        versions.write(folder, versions.generator(folder) if plan.is_generated() else None)
+        versions.write(folder, config, versions.generator(folder) if plan.is_generated() else None)
     return plan

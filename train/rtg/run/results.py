@@ -222,6 +222,12 @@ def summary_text(plan: RunPlan, summary: dict[str, Any]) -> str:
         found = diagnosis.bottleneck(plan.config, summary, report)
     if (words := diagnosis.undrawn_goals(summary)) and "bottleneck: goal" not in (found or ""):
         lines.append(words)
+    if dropped := summary.get("journal_bytes_dropped"):
+        file = plan.folder / run_folder.JOURNAL_FILE
+        lines.append(
+            f"{file}: {dropped:,} bytes were torn, damaged or of other settings; what they held "
+            "was computed again"
+        )
     if found:
         lines.append(found)
     return "\n".join([*lines, f"results: {plan.folder}"])

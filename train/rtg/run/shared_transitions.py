@@ -8,7 +8,7 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from rtg import _core
+from rtg import _core, engines
 from rtg.errors import UserError
 from rtg.files import versions
 from rtg.run import effective_config
@@ -32,7 +32,11 @@ def generation_key(config: _core.Config) -> str | None:
     """
     if not config.train.offline:
         return None
-    return json.dumps(determining_values(config))
+    return _key(config, engines.identity(config))
+
+
+def _key(config: _core.Config, engine: str) -> str:
+    return json.dumps({**determining_values(config), versions.ENGINE_KEY: engine})
 
 
 def is_generated(run: Path) -> bool:
@@ -59,9 +63,10 @@ def _stored_key(run: Path) -> str | None:
     """
     config = run / "config.yaml"
     try:
-        if versions.generator(run).get("core_sha256") != versions.core_digest():
+        made_by = versions.generator(run)
+        if made_by.get("core_sha256") != versions.core_digest():
             return None
-        return generation_key(effective_config.load_written(config))
+        return _key(effective_config.load_written(config), str(made_by.get(versions.ENGINE_KEY)))
     except (UserError, OSError):
         return None
 
@@ -72,7 +77,8 @@ def take_over(source: Path, run: Path) -> None:
     Raises UserError if they were changed.
     """
     versions.check_seal(source / _FILES[0])
-    versions.write(run, versions.generator(source))
+    config = effective_config.load_written(run / "config.yaml")
+    versions.write(run, config, versions.generator(source))
     for name in _FILES:
         draft = run / f".{name}.{os.getpid()}"
         try:
