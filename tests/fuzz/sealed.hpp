@@ -15,7 +15,7 @@ namespace rtg::fuzz {
 inline const bus::RunKey& fixed_key() {
   static const bus::RunKey key = [] {
     const ScratchFile file("key");
-    file.write(bytes_of(std::string(64, '5') + " fuzz\n"));
+    file.write(bytes_of(std::string(64, '5') + " 7ee57b36aa205413ca410423ea6ca368 fuzz\n"));
     return bus::RunKey::read(file.path);
   }();
   return key;
