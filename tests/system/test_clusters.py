@@ -10,7 +10,7 @@ from comparisons import PATIENCE, command, figures, finish, start, wait_for
 from living import processes_of
 from rtg import paths
 
-RUNS = ("--seeds", "1,2", "--set", "train.interactions=1500", "--set", "search.shards=2")
+RUNS = ("--seeds", "1,2", "--set", "train.interactions=1500", "--set", "search.shards=4")
 
 
 @pytest.fixture(scope="module")
@@ -21,11 +21,11 @@ def undisturbed(tmp_path_factory):
 
 
 def assert_same(folder, undisturbed):
-    """Figures, and transitions to the bit, each generation of which two jobs have found."""
+    """Figures, and transitions to the bit, each generation of which four jobs have found."""
     assert figures(folder) == figures(undisturbed)
     data = "gathering/ddqn_naive/seed-{}/transitions.npz"
     for seed in (1, 2):
-        assert len(list((folder / "gathering/.shards").glob("*/[01]"))) == 4
+        assert len(list((folder / "gathering/.shards").glob("*/[0-3]"))) == 8
         there, here = (place / data.format(seed) for place in (folder, undisturbed))
         assert there.read_bytes() == here.read_bytes()
 

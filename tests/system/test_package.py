@@ -11,6 +11,7 @@ import pytest
 import rtg
 import time_limit
 from rtg import paths
+from small_examples import NAMES, SMALL
 
 PARTS = """
 import gymnasium, numpy, rtg
@@ -25,6 +26,15 @@ data = rtg.Transitions.joined(rtg.generate(task, 400))
 policy = rtg.train(data, task, "trained", settings=["train.interactions=80"])
 assert policy(task.start()[None]).shape == (1,)
 print(rtg.__file__)
+"""
+
+EXAMPLES = """
+import importlib, pathlib, pkgutil, rtg.examples
+names = sorted(module.name for module in pkgutil.iter_modules(rtg.examples.__path__))
+for name in names:
+    if name[0].isdigit() and name != "11_own_engine":  # which needs an extra
+        example = importlib.import_module(f"rtg.examples.{name}")
+        example.main(pathlib.Path("."), **SMALL.get(name, {}))
 """
 
 
@@ -64,6 +74,12 @@ def test_the_parts_work_from_a_wheel_in_any_folder(installed: Path, tmp_path: Pa
     assert str(installed.parents[1]) in said
     checked = run([installed.parent / "rtg", "check", "drawer"], **elsewhere(tmp_path))
     assert f"{installed.parents[1]}/lib" in checked and "drawer.yaml: legal" in checked
+
+
+def test_the_examples_run_from_a_wheel(installed: Path, tmp_path: Path) -> None:
+    run([installed, "-c", f"SMALL = {SMALL}\n{EXAMPLES}"], **elsewhere(tmp_path))
+    pictures = {path.stem for path in tmp_path.iterdir()}
+    assert pictures >= {name for name in NAMES if name != "11_own_engine"}
 
 
 def test_an_installed_package_runs_its_processes(installed: Path, tmp_path: Path) -> None:
