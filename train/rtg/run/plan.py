@@ -14,7 +14,7 @@ from rtg.errors import UserError
 from rtg.files import minari_data, own_data, run_folder, versions
 from rtg.files.own_data import OwnData
 from rtg.learn.settings import CHECKPOINT_SETTINGS
-from rtg.run import effective_config, shared_transitions
+from rtg.run import effective_config, engine_time, shared_transitions
 from rtg.run.run_args import Override, RunArgs
 
 
@@ -216,6 +216,10 @@ def make_plan(args: RunArgs) -> RunPlan:
     if own is not None:
         _check_engine(own, args.data, engine)
     notes = []
+    if not args.resume:
+        transitions = config.search.transitions if config.train.offline and own is None else 0
+        interactions = config.train.interactions if args.train else 0
+        notes += engine_time.words(config, transitions, interactions)
     needs_bus = config.train.offline and not config.run.in_process and own is None
     if needs_bus and (why := defect(config.run.bus)):
         notes.append(f"no process graph: {why}")
