@@ -70,6 +70,12 @@ LACKS = {
         1,
         "/mnt/a.rrd: No space left on device",
     ),
+    "no descriptors": (
+        f"ulimit -n 8; {MAKE} out",
+        1,
+        "Too many open files; to mend it: allow more",
+    ),
+    "few descriptors": (f"ulimit -n 12; {MAKE} out", 1, "Too many open files; to mend it: allow"),
     "read-only": (f"{MOUNT % '40k,ro'} && {MAKE} /mnt/out", 2, "/mnt/out: Read-only file system"),
 }
 

@@ -46,6 +46,12 @@ def is_of_the_machine(error: OSError) -> bool:
     return error.errno in _REMEDIES
 
 
+def raise_if_of_the_machine(error: Exception) -> None:
+    """Raises `error` as in_words() has it if it is_of_the_machine()."""
+    if isinstance(error, OSError) and is_of_the_machine(error):
+        raise in_words(error) from error
+
+
 def in_words(error: OSError, file: str | os.PathLike[str] | None = None) -> UserError | RunError:
     """Returns the error that tells of `error` with the file, else `file`, and what to do.
 

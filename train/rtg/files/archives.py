@@ -18,6 +18,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from rtg import errors
 from rtg.files import whole_files
 
 # The last record of a zip file: its first bytes, and its length without the comment, whose length
@@ -66,6 +67,8 @@ def opened(path: Path) -> Iterator[BinaryIO]:
             with zipfile.ZipFile(file) as archive:
                 unpacked = sum(entry.file_size for entry in archive.infolist())
         except Exception as error:  # zipfile raises any error on foreign bytes
+            if isinstance(error, OSError) and errors.is_of_the_machine(error):
+                raise
             raise ValueError(str(error)) from None
         if unpacked > room(size):
             raise ValueError(f"it would unpack to {unpacked} bytes")

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rtg import _core
-from rtg.errors import UserError
+from rtg.errors import UserError, raise_if_of_the_machine
 from rtg.files import archives, run_folder, versions
 from rtg.files.chains import Chains, chains_of
 from rtg.files.row_digest import KEY, row_digest
@@ -116,6 +116,7 @@ def read_arrays(path: Path, names: Iterable[str], legal: str) -> dict[str, Array
     except FileNotFoundError:
         raise DatasetError(f"{path}: no such file; legal: {legal}") from None
     except (OSError, ValueError) as error:
+        raise_if_of_the_machine(error)
         why = (isinstance(error, OSError) and error.strerror) or error
         raise DatasetError(
             f"{path}: is not a transition file, or damaged ({why}); legal: {legal}"
