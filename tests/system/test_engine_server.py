@@ -1,12 +1,13 @@
-"""A forward simulator of the user's as a process of the graph: `forward.engine: module:Class`."""
+"""Forward simulators of Python as processes of the graph: mujoco, and a class of the user's."""
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import network
@@ -14,6 +15,7 @@ import pytest
 from graph import PATIENCE, Graph, Process, first_rows, lost
 from rtg import cli, paths
 
+MUJOCO = "forward.engine=mujoco"
 ENVIRONMENT = "forward.engine=rtg.examples.environment_engine:Environment"
 SMALL = ("gathering", "--no-train", "--transitions", "400", "--set", "search.breadth=4")
 NETWORK = paths.ROOT / "tests" / "support" / "private_network.sh"
@@ -43,19 +45,30 @@ def digest(folder: Path) -> str:
 
 
 @pytest.fixture(scope="module")
-def expected(tmp_path_factory: pytest.TempPathFactory) -> str:
-    folder = tmp_path_factory.mktemp("in_process") / "run"
-    assert cli.main([*SMALL, "--in-process", "--set", ENVIRONMENT, "--out", str(folder)]) == 0
-    return digest(folder)
+def expected(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], str]:
+    """Returns the digest of the transitions that a run in one process finds with an engine."""
+
+    @functools.cache
+    def found(engine: str) -> str:
+        if engine == MUJOCO:
+            pytest.importorskip("mujoco", reason="the extra `mujoco` is not installed")
+        folder = tmp_path_factory.mktemp("in_process") / "run"
+        assert cli.main([*SMALL, "--in-process", "--set", engine, "--out", str(folder)]) == 0
+        return digest(folder)
+
+    return found
 
 
-@pytest.mark.parametrize("workers", ["1", "4"])
+@pytest.mark.parametrize(
+    ("engine", "workers"), [(ENVIRONMENT, "2"), (MUJOCO, "1"), (MUJOCO, "2"), (MUJOCO, "4")]
+)
 def test_the_bytes_are_those_of_a_run_in_one_process(
-    tmp_path: Path, expected: str, workers: str
+    tmp_path: Path, expected: Callable[[str], str], engine: str, workers: str
 ) -> None:
-    done = run(ENVIRONMENT, tmp_path / "run", "--workers", workers)
+    there = expected(engine)
+    done = run(engine, tmp_path / "run", "--workers", workers)
     assert done.returncode == 0, done.stderr
-    assert digest(tmp_path / "run") == expected
+    assert digest(tmp_path / "run") == there
 
 
 def test_an_engine_that_fails_ends_the_run_with_its_traceback(tmp_path: Path) -> None:
@@ -72,9 +85,13 @@ def net() -> Iterator[network.Network]:
         yield created
 
 
-def test_a_killed_server_is_replaced(net: network.Network, tmp_path: Path, expected: str) -> None:
+@pytest.mark.parametrize("engine", [ENVIRONMENT, MUJOCO])
+def test_a_killed_server_is_replaced(
+    net: network.Network, tmp_path: Path, expected: Callable[[str], str], engine: str
+) -> None:
+    there = expected(engine)
     settings = ("search.breadth=4", "search.transitions=400")
-    graph = Graph(net, tmp_path, ENVIRONMENT, *settings, task=paths.CONFIG / "gathering.yaml")
+    graph = Graph(net, tmp_path, engine, *settings, task=paths.CONFIG / "gathering.yaml")
 
     def server() -> Process:
         command = [sys.executable, "-m", "rtg.engines.server", graph.config, graph.key]
@@ -88,4 +105,4 @@ def test_a_killed_server_is_replaced(net: network.Network, tmp_path: Path, expec
     assert lost(consumer) == 0
     for process in (coordinator, worker, second):
         assert process.wait(PATIENCE) == 0
-    assert digest(tmp_path) == expected
+    assert digest(tmp_path) == there
