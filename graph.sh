@@ -24,7 +24,8 @@ consumer=${2:-trainer} flags=("${@:3}") config=$folder/config.yaml key=$folder/r
 journal=$folder/generation.journal journaled=0 # its size when the coordinator last died
 
 program() { # NAME: becomes that program; by hand they can be started in any order
-  local be=(exec setsid setpriv --pdeathsig KILL) # out of the terminal's reach, but not longer than this script
+  # Out of the terminal's reach, but not longer than this script, which may end while it starts a program.
+  local be=(exec setsid setpriv --pdeathsig KILL "$BASH" -c '((PPID == $1)) && exec "${@:2}"' _ $$)
   case $1 in
     forward_sim_server)
       if grep -qE '^  engine: (box2d|newton) ' "$config"; then "${be[@]}" "$nodes/rtg_forward_sim_server" "$config" "$key"; fi

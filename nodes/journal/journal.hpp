@@ -65,7 +65,7 @@ class Journal {
   std::filesystem::path path_;
   std::vector<std::uint8_t> identity_;  // as in the file
   files::Descriptor file_;
-  std::int64_t end_ = 0;                                   // of the last record
+  std::int64_t end_ = 0;  // of the last record
   std::int64_t dropped_bytes_ = 0;
   std::unordered_map<std::int64_t, std::int64_t> places_;  // of records in the file, by id
 };

@@ -21,7 +21,7 @@ def groups(task: str) -> list[str]:
 
 
 def test_the_variants_are_of_starts_noise_and_physics() -> None:
-    physics = ["noise of poses", "friction", "mass of objects", "stride", "coasting"]
+    physics = ["noise of poses", "friction", "mass of objects", "stride", "coasting", "simulator"]
     fixed = ["as trained", "robot", "objects moved", "objects turned"]
     assert groups("gathering") == [*fixed, *physics]
     assert groups("art_manip") == [*fixed[:3], *physics], "a chain does not turn alone"

@@ -77,7 +77,7 @@ def take_over(source: Path, run: Path) -> None:
     Raises UserError if they were changed.
     """
     versions.check_seal(source / _FILES[0])
-    config = effective_config.load_written(run / "config.yaml")
+    config = effective_config.load_written(source / "config.yaml")  # generates the same
     versions.write(run, config, versions.generator(source))
     for name in _FILES:
         draft = run / f".{name}.{os.getpid()}"
