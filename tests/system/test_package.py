@@ -39,8 +39,10 @@ for name in names:
 
 
 TOOLS = f"{Path(sys.executable).parent}:{os.environ['PATH']}"  # CMake and Ninja among them
-# One process compiles: other tests run beside.
-BUILDING = {**os.environ, "PATH": TOOLS, "CMAKE_BUILD_PARALLEL_LEVEL": "1"}
+# One process compiles: other tests run beside. By these names of the compilers ccache has what the
+# release build has compiled.
+COMPILERS = {"CC": "/usr/bin/cc", "CXX": "/usr/bin/c++"}
+BUILDING = {**os.environ, **COMPILERS, "PATH": TOOLS, "CMAKE_BUILD_PARALLEL_LEVEL": "1"}
 BUILD_PATIENCE = 3000.0  # [s]
 
 
@@ -55,7 +57,8 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A virtual environment with nothing but the wheel and what it depends on."""
     folder = tmp_path_factory.mktemp("package")
     build = [sys.executable, "-m", "pip", "wheel", paths.ROOT, "--wheel-dir", folder / "wheels"]
-    run([*build, "--no-deps", "--no-build-isolation"])
+    below = f"build-dir={paths.ROOT / 'build' / 'wheel'}"
+    run([*build, "--no-deps", "--no-build-isolation", "--config-settings", below])
     (wheel,) = (folder / "wheels").iterdir()
     run([sys.executable, "-m", "venv", folder / "environment"])
     pinned = paths.ROOT / "train" / "requirements.txt"
