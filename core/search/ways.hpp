@@ -29,11 +29,23 @@ class Ways {
   Way between(const Vector2d& a, const Vector2d& b) const;
 
  private:
-  bool is_free(const Vector2d& a, const Vector2d& b) const;
-  std::vector<std::pair<std::size_t, double>> seen_from(const Vector2d& x) const;
+  struct Obstacle {  // convex
+    std::vector<Vector2d> vertices;
+    std::vector<Vector2d> normals;  // of the edge that begins at each vertex
+  };
+  struct Point {
+    Vector2d x;
+    std::vector<double> depths;  // how deep it lies in each obstacle, 0 outside [m]
+  };
 
-  std::vector<Polygon> obstacles_;
-  std::vector<Vector2d> corners_;
+  static double depth(const Obstacle& obstacle, const Vector2d& x);
+  static bool enters(const Obstacle& obstacle, const Vector2d& a, const Vector2d& b, double free);
+  Point point(const Vector2d& x) const;
+  bool is_free(const Point& a, const Point& b) const;
+  std::vector<std::pair<std::size_t, double>> seen_from(const Point& point) const;
+
+  std::vector<Obstacle> obstacles_;
+  std::vector<Point> corners_;
   MatrixXd lengths_;  // of the ways between corners; infinite if there is none
   double arena_ = 0.0;
 };
