@@ -33,7 +33,7 @@ def test_starts_of_search_training_and_evaluations_are_all_different() -> None:
     config = _core.Config.from_file(TINY, [f"train.eval_episodes={COUNT}"])
     of = {f"search {seed}": of_search(seed) for seed in (1, 2)}
     of |= {f"training {seed}": of_training(seed) for seed in (1, 2)}
-    of["evaluations"] = held_out_starts(config)
+    of |= {f"evaluation {k}": held_out_starts(config, number=k) for k in (0, 1)}
     of["the final one"] = held_out_starts(config, FINAL_SEED)
     places = {name: {start[1:, :2].tobytes() for start in starts} for name, starts in of.items()}
     for name, found in places.items():

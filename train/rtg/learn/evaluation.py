@@ -42,13 +42,15 @@ class Evaluation(NamedTuple):
         }
 
 
-def held_out_starts(config: _core.Config, seed: int = HELD_OUT_SEED) -> Floats:
-    """Returns the starts of random stream `seed`, the same for every run. [episodes, bodies, 3]
+def held_out_starts(config: _core.Config, seed: int = HELD_OUT_SEED, number: int = 0) -> Floats:
+    """Returns the starts of an evaluation, the same for every run. [episodes, bodies, 3]
 
-    There is one for each of the `train.eval_episodes`.
+    There is one for each of the `train.eval_episodes`. They are of the random stream `seed`, those
+    of evaluation `number`: a policy that is lucky in one is not so in the next.
     """
     amplitude, count = config.evaluation_jitter, config.train.eval_episodes
-    return np.stack([config.task.jittered_start(amplitude, seed, k) for k in range(count)])
+    of_evaluation = range(number * count, (number + 1) * count)
+    return np.stack([config.task.jittered_start(amplitude, seed, k) for k in of_evaluation])
 
 
 def _greedy_actions(

@@ -62,7 +62,6 @@ class Training:
             **policy_file.identity(self.task, s),
             **fixed,
         }
-        self.starts = held_out_starts(config)
         self.runs = 1  # number of runs that learn in this process
         # Device of the last period of learning, see _current_device_info().
         self.device_info: dict[str, Any] = {}
@@ -176,8 +175,8 @@ class Training:
         return self.scheduled_interactions // every > last // every
 
     def evaluate(self) -> Evaluation:
-        """Evaluates the greedy policy on the held-out starts; changes no state of the learner."""
-        return self._evaluate(self.starts)
+        """Evaluates the greedy policy from starts of its own; changes no state of the learner."""
+        return self._evaluate(held_out_starts(self.config, number=len(self.log.rows)))
 
     def _evaluate(self, starts: Floats) -> Evaluation:
         return evaluate(self.config, self.model.values, starts, self.discount)
