@@ -150,12 +150,13 @@ class Task:
         given = numbers(name, state, (len(self.bodies), 3))
         return own_data.in_task_units(self.core, given[None], name)[0]
 
-    def config_with(self, *settings: Sequence[str]) -> _core.Config:
-        """Returns the configuration with further settings, each "section.key=value".
+    def config_with(self, *settings: str | Sequence[str]) -> _core.Config:
+        """Returns the configuration with further settings, each "section.key=value", or lists.
 
         Raises ValueError for settings that are not legal.
         """
-        changed = [setting for some in settings for setting in some]
+        lists = ([some] if isinstance(some, str) else some for some in settings)
+        changed = [setting for some in lists for setting in some]
         return _core.Config.from_text(self.config.yaml, self.name, changed)
 
     def outer(self, states: Floats) -> Floats:

@@ -100,6 +100,7 @@ def test_a_failure_has_the_users_traceback_and_the_state() -> None:
             "Short",
             r"returned arrays \(2, 1, 3\) of float64 and \(2,\) of bool; legal: states \(2, 4",
         ),
+        ("Lost", r"returned with True numbers that are not finite for the state \[\["),
     ],
 )
 def test_other_failures_say_what_they_are(engine: str, words: str) -> None:
@@ -162,6 +163,16 @@ def test_check_makes_the_engine_and_names_it(capsys: pytest.CaptureFixture[str])
     assert cli.main(["check", "gathering", "--set", "forward.engine=toy_engines:Versioned"]) == 0
     assert "\nforward simulator: toy_engines:Versioned 1.2\n" in capsys.readouterr().out
     assert cli.main(["check", "gathering", "--set", "forward.engine=toy_engines:NoEngine"]) == 2
+
+
+def test_a_run_whose_engine_simulates_nothing_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["gathering", "--in-process", "--no-train", "--transitions", "100"]
+    setting = ["--set", "forward.engine=toy_engines:Helpless"]
+    assert cli.main([*words, *setting, "--out", str(tmp_path / "run")]) == 1
+    told = capsys.readouterr().out
+    assert "bottleneck: forward simulator: it could not simulate " in told
 
 
 def test_a_run_with_a_broken_engine_ends_with_its_traceback(

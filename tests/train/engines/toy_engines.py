@@ -48,6 +48,21 @@ class Short(Ghost):
         return states[:, :1], np.ones(len(states), bool)
 
 
+class Lost(Ghost):
+    """Loses the robot, and says that all is well."""
+
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        ends, ok = super().push(states, ways)
+        return np.where(np.arange(states.shape[1])[:, None] == 0, np.nan, ends), ok
+
+
+class Helpless(Ghost):
+    """Cannot simulate any push."""
+
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return states, ~self.scene.is_free(states, 0.0 * ways)
+
+
 class Unmade(Ghost):
     def __init__(self, scene: Scene) -> None:
         raise RuntimeError("no licence")

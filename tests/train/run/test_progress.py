@@ -57,7 +57,7 @@ def test_elsewhere_the_last_line_of_each_half_says_that_the_results_are_to_come(
     ("budget", "words"),
     [
         (6000, "at most 1:40 left"),  # 20 s + 60 s at 100 interactions/s + results
-        (0, "about 0:40 left"),
+        (0, "about 0:24 left"),
     ],
 )
 def test_elsewhere_the_time_left_is_a_bound_where_training_may_end_early(

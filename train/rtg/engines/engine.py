@@ -96,7 +96,7 @@ class _Outer:
         inside = np.clip(robot + ways, -arena, arena) - robot
         ends, ok = self._checked(states / metre, inside / self._task.metre)
         after = np.float32(ends * metre).astype(np.float64)
-        ok = ok & np.isfinite(after).all((1, 2))
+        ok = ok & np.isfinite(after).all((1, 2))  # in single precision
         return np.where(ok[:, None, None], after, states), ok
 
     def _checked(self, states: Floats, ways: Floats) -> tuple[Floats, Bools]:
@@ -121,7 +121,11 @@ class _Outer:
                 raise ValueError(
                     f"arrays {ends.shape} of {ends.dtype} and {ok.shape} of {ok.dtype}"
                 )
-            return ends.astype(np.float64), ok
+            ends = ends.astype(np.float64)
+            if (wrong := ok & ~np.isfinite(ends).all((1, 2))).any():
+                where = states[wrong][0].tolist()
+                raise ValueError(f"with True numbers that are not finite for the state {where}")
+            return ends, ok
         except (TypeError, ValueError) as error:
             raise EngineError(
                 f"{self._prefix()} returned {error}; legal: states {states.shape} of numbers and "

@@ -99,7 +99,11 @@ class Scene:
         self.start: Floats = task.start / [m, m, 1.0]  # has the places of fixed bodies [bodies, 3]
 
     def is_free(self, states: Floats, ways: Floats) -> Bools:
-        """Returns where the robot meets no body on its way. [N, bodies, 3], [N, 2] -> [N]"""
-        m = self._task.metre
-        free: Bools = self._task.is_free(states * [m, m, 1.0], ways * m)
+        """Returns where the robot meets no body on its way. [N, bodies, 3], [N, 2] -> [N]
+
+        On a way of 0 it meets none.
+        """
+        m, moves = self._task.metre, ways.any(1)
+        free = np.ones(len(states), np.bool_)
+        free[moves] = self._task.is_free(states[moves] * [m, m, 1.0], ways[moves] * m)
         return free

@@ -13,6 +13,7 @@ from rtg.run.effective_config import TREE_GENERATORS
 _WELL = 0.9  # success rate that needs no explanation
 _UNDRAWN = 0.05  # share of draws of goal states in vain that is told
 _SOLVED = 0.5  # least share of reverse solves
+_REJECTED = 0.5  # share of pushes that could not be simulated
 _COVERED = 0.005  # least share of own transitions that begin at a start
 _RANKED = 0.5  # least rank correlation of Q with the simulator
 _MANY_STEPS = 4  # gradient steps of a round, beyond which more are not advised
@@ -63,6 +64,12 @@ def of_search(config: _core.Config, report: dict[str, Any]) -> str | None:
     """
     if config.search.generator not in TREE_GENERATORS:
         return None
+    replays, rejected = report.get("replays", 0), report.get("rejected_pushes", 0)
+    if replays and rejected > _REJECTED * replays:
+        return (
+            f"forward simulator: it could not simulate {rejected:,} of {replays:,} pushes; try "
+            f"another forward.engine ({config.forward.engine} now), or mend it"
+        )
     if not report["trees"]:
         return (
             f"goal states: {report.get('undrawn_goals', 0)} draws met no goal"
@@ -132,6 +139,11 @@ def _learning(config: _core.Config, summary: dict[str, Any]) -> str | None:
             f"({ranked:.2f}); try {headings}, more interactions (train.interactions)"
         )
     train = config.train
+    if not train.interact:
+        return (
+            f"learning: success {success:.2f} from the data alone; try interactions "
+            "(train.interact=true)"
+        )
     more = f"more interactions (train.interactions, {train.interactions:,} now)"
     if train.gradient_steps < _MANY_STEPS:
         more = f"more gradient steps (train.gradient_steps, {train.gradient_steps} now) or {more}"

@@ -9,6 +9,7 @@ from rtg.run.run_state import FINISHED, RateMeter, RunState
 _WINDOW = 30.0  # over which the rate of transitions is measured [s]
 _GRADIENT_STEPS = 140.0  # of learning, the median of docs/results/tasks [1/s]
 _RESULTS = 20.0  # for the last evaluation and pictures, 8 s in the middle there [s]
+_PICTURES = 4.0  # of a run without training [s]
 
 
 def usual_rate(train: _core.TrainConfig) -> float:
@@ -47,7 +48,7 @@ class TimeLeft:
             return None
         if state.interactions < state.budget:
             left += (state.budget - state.interactions) / (state.rate or self._usual_rate)
-        return left and left + _RESULTS
+        return left and left + (_RESULTS if state.budget else _PICTURES)
 
 
 def words(seconds: float | None, state: RunState) -> str:
