@@ -35,7 +35,7 @@ namespace rtg::forward {
 /// ends at its target.
 class Box2dSimulator final : public Simulator {
  public:
-  /// Returns the version of Box2D, as in "2.4.1".
+  /// Returns the version that Box2D says it has, "2.4.0" of Debian's 2.4.1.
   static std::string library_version();
 
   /// All shapes of `scene` must be legal (polygon_defect() returns nothing), and bodies[0] movable.

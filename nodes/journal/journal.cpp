@@ -52,12 +52,12 @@ Journal::Journal(std::filesystem::path path, std::int64_t identity)
     fail("cannot be opened: " + std::generic_category().message(errno));
   if (!S_ISREG(status.st_mode)) fail("is no regular file");
   if (::flock(file_.number(), LOCK_EX | LOCK_NB) != 0) fail("another process has it open");
-  begin();
+  const bool is_ours = begin();
   while (const std::optional<Record> record = record_at(end_)) {
     places_[record->id] = end_;
     end_ += static_cast<std::int64_t>(kHeadBytes + record->bytes.size() + kDigestBytes);
   }
-  dropped_bytes_ = std::max<std::int64_t>(0, status.st_size - end_);
+  dropped_bytes_ = is_ours ? status.st_size - end_ : status.st_size;
   cut();
 }
 
@@ -82,18 +82,19 @@ std::optional<std::vector<std::uint8_t>> Journal::find(std::int64_t id) const {
   return std::move(record->bytes);
 }
 
-/// Sets the end to that of the head of the file. If that is not there, empties the file and writes
-/// it.
-void Journal::begin() {
+/// Sets the end to that of the head of the file. If that is not there, empties the file, writes it
+/// and returns false.
+bool Journal::begin() {
   std::vector<std::uint8_t> head(kMagic.begin(), kMagic.end());
   head.insert(head.end(), identity_.begin(), identity_.end());
   std::vector<std::uint8_t> found(head.size());
   if (read(0, found) && found == head) {
     end_ = static_cast<std::int64_t>(head.size());
-  } else {
-    cut();
-    write(head);
+    return true;
   }
+  cut();
+  write(head);
+  return false;
 }
 
 /// Cuts off what is behind the end.

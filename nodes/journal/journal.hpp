@@ -55,7 +55,7 @@ class Journal {
     std::vector<std::uint8_t> bytes;
   };
 
-  void begin();
+  bool begin();
   void cut();
   std::optional<Record> record_at(std::int64_t place) const;
   bool read(std::int64_t place, std::span<std::uint8_t> bytes) const;

@@ -46,10 +46,10 @@ def is_of_the_machine(error: OSError) -> bool:
     return error.errno in _REMEDIES
 
 
-def raise_if_of_the_machine(error: Exception) -> None:
-    """Raises `error` as in_words() has it if it is_of_the_machine()."""
+def raise_if_of_the_machine(error: Exception, file: Path) -> None:
+    """Raises `error`, met when `file` was used, as in_words() has it if it is_of_the_machine()."""
     if isinstance(error, OSError) and is_of_the_machine(error):
-        raise in_words(error) from error
+        raise in_words(OSError(error.errno, error.strerror), file) from error
 
 
 def in_words(error: OSError, file: str | os.PathLike[str] | None = None) -> UserError | RunError:

@@ -72,7 +72,7 @@ TEST_F(JournalTest, TornAtAnyByteKeepsTheRecordsBeforeAndGrowsOn) {
     {
       Journal torn(path, kIdentity);
       const auto kept = std::ranges::upper_bound(ends, cut) - ends.begin();
-      const std::size_t end = kept > 0 ? ends[static_cast<std::size_t>(kept - 1)] : cut;
+      const std::size_t end = kept > 0 ? ends[static_cast<std::size_t>(kept - 1)] : 0;
       EXPECT_EQ(torn.dropped_bytes(), static_cast<std::int64_t>(cut - end)) << cut;
       torn.append(10, Bytes{6, 6});
     }
@@ -114,6 +114,8 @@ TEST_F(JournalTest, ARecordThatIsDamagedWhileItIsOpenIsNotFound) {
 
 TEST_F(JournalTest, OfAnotherIdentityBeginsAnew) {
   const std::size_t head = fill()[0];
+  const auto size = static_cast<std::int64_t>(text().size());
+  EXPECT_EQ(Journal(path, kIdentity + 1).dropped_bytes(), size);
   EXPECT_EQ(Journal(path, kIdentity + 1).size(), 0U);
   EXPECT_EQ(text().size(), head);
   EXPECT_EQ(Journal(path, kIdentity).size(), 0U) << "the records are gone";

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import rtg
-from rtg import cli
+from rtg import _core, cli
 from rtg.engines import EngineError, Scene, identity, simulator
 from rtg.errors import UserError
+from rtg.files import run_folder, versions
 from rtg.run import run_args
 from rtg.run.plan import make_plan
 
@@ -62,7 +63,31 @@ def test_the_identity_is_the_version_or_else_the_source() -> None:
     digest = hashlib.sha256((HERE / "toy_engines.py").read_bytes()).hexdigest()[:12]
     assert identity(of("Ghost").config) == f"toy_engines:Ghost sha256:{digest}"
     assert identity(of("Versioned").config) == "toy_engines:Versioned 1.2"
-    assert identity(rtg.load_task("maze", ["forward.engine=newton"]).config) == "newton"
+    slow = ["forward.engine=newton", "forward.friction=0.5"]
+    assert identity(rtg.load_task("maze", slow).config) == "newton friction x 0.5"
+    for engine in ("NoText", "TwoLines"):
+        with pytest.raises(UserError, match="; legal: a text of one line"):
+            identity(of(engine).config)
+
+
+@pytest.mark.parametrize("engine", ["box2d", "newton", "mujoco"])
+def test_friction_of_the_forward_simulator_is_as_that_of_all_bodies(engine: str) -> None:
+    if engine == "mujoco":
+        pytest.importorskip("mujoco", reason="the extra `mujoco` is not installed")
+    task = rtg.load_task("gathering", [f"forward.engine={engine}"])
+    text = task.config.yaml
+    rough = text.replace("friction: 0.5", "friction: 1.5")
+    assert rough != text
+    scaled = _core.Config.from_text(text, "scaled", ["forward.friction=3"])
+    state = task.inner(task.start()[None])
+    state[0, 0] = state[0, 1] - [1.4, 0.3, 0.0]
+    way = np.array([[1.5, 0.0]])
+    ends = [
+        simulator(config).push_along(state, way)[0]
+        for config in (task.config, scaled, _core.Config.from_text(rough, "rough"))
+    ]
+    np.testing.assert_allclose(ends[1], ends[2], atol=1e-6)
+    assert np.abs(ends[0] - ends[1])[0, 1].max() > 1e-3
 
 
 def test_what_another_engine_says_is_no_data_for_a_run(tmp_path: Path) -> None:
@@ -74,7 +99,16 @@ def test_what_another_engine_says_is_no_data_for_a_run(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="are of the forward simulator newton, and this run's is "):
         make_plan(run_args.parse([*words, box2d, "--data", newton]))
     assert not Path(box2d).exists()
-    make_plan(run_args.parse([*words, box2d, "--data", newton, *engine]))
+    between = str(tmp_path / "between")
+    make_plan(run_args.parse([*words, between, "--data", newton, *engine]))
+    for data in (newton, between):
+        with pytest.raises(UserError, match="are of the forward simulator newton, and this run"):
+            make_plan(run_args.parse([*words, box2d, "--data", data, "--interactions", "9"]))
+    versions_file = Path(between) / versions.FILE
+    found = {**run_folder.read_json(versions_file), versions.ENGINE_KEY: "newton 2"}
+    run_folder.write_json(versions_file, found)
+    with pytest.raises(UserError, match="begun with the forward simulator newton 2, and this is "):
+        make_plan(run_args.parse(["--resume", "--out", between]))
 
 
 def test_a_failure_has_the_users_traceback_and_the_state() -> None:

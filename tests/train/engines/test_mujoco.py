@@ -1,5 +1,7 @@
 """MuJoCo as a forward simulator, beside Box2D."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 import rtg
@@ -49,6 +51,17 @@ def test_equal_pushes_end_equally_in_any_batch() -> None:
     order = np.random.default_rng(3).permutation(40)[:17]
     again, still_ok = rtg.forward.Forward(task).push(states[order], actions[order])
     assert (again == ends[order]).all() and (still_ok == ok[order]).all()
+
+
+def test_threads_side_by_side_get_the_same_bits() -> None:
+    """As the variants of an evaluation and the seeds of one process do."""
+    task = rtg.load_task("gathering", ["forward.engine=mujoco"])
+    states, actions = meeting_pushes(task, 40)
+    expected, _ = rtg.forward.Forward(task).push(states, actions)
+    with ThreadPoolExecutor(4) as pool:
+        engines = [rtg.forward.Forward(task) for _ in range(4)]
+        for found in pool.map(lambda one: one.push(states, actions)[0], engines * 3):
+            assert (found == expected).all()
 
 
 def test_joints_stay_closed() -> None:

@@ -20,6 +20,14 @@ class Versioned(Ghost):
     version = "1.2"
 
 
+class NoText(Ghost):
+    version = 12
+
+
+class TwoLines(Ghost):
+    version = "1\n2"
+
+
 class Finicky(Ghost):
     """Cannot simulate pushes to the left."""
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from rtg import _core, paths
 from rtg.errors import RunError, UserError
-from rtg.files import replay_gaps, run_folder
+from rtg.files import checkpoint, dataset, replay_gaps, run_folder, whole_files
 
 CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["run.seed=7", "run.workers=2"])
 
@@ -158,3 +158,19 @@ def test_no_input_is_to_blame_for_a_full_disk(tmp_path):
         run_folder.write_errors_as_user_errors(tmp_path),
     ):
         raise OSError(errno.ENOSPC, "full")
+
+
+@pytest.mark.parametrize(
+    "read",
+    [dataset.read, checkpoint.read, run_folder.read_text, run_folder.read_json],
+    ids=["transitions", "checkpoint", "text", "json"],
+)
+def test_few_descriptors_are_no_damage(tmp_path, monkeypatch, read):
+    def exhausted(*_, **__):
+        raise OSError(errno.EMFILE, "Too many open files", "codec.py")
+
+    file = tmp_path / "file"
+    file.touch()
+    monkeypatch.setattr(whole_files, "opened", exhausted)
+    with pytest.raises(RunError, match=f"^{file}: Too many open files; to mend it: allow more"):
+        read(file)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rtg import _core, paths
+from rtg.errors import UserError
 from rtg.learn import robustness
 from rtg.learn.robustness import Variant, evaluate_variant
 
@@ -95,6 +96,20 @@ def reasons(file: Path) -> dict[str, str | None]:
             row = evaluate_variant(file, config, values_of([]), variant, 1)
             found[f"{variant.group} {variant.label}"] = row.reason
     return found
+
+
+def test_a_missing_engine_of_a_variant_is_a_reason_and_one_of_the_run_an_error(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "config.yaml"
+    config = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["forward.engine=none:Own"])
+    file.write_text(config.yaml)
+    values = values_of([])
+    other = Variant("simulator", "x", ("forward.engine=none:Other",))
+    reason = evaluate_variant(file, config, values, other, 2).reason
+    assert reason is not None and "there is no module none" in reason
+    with pytest.raises(UserError, match="there is no module none"):
+        evaluate_variant(file, config, values, Variant("as trained", ""), 2)
 
 
 @pytest.mark.parametrize("task", paths.task_names())

@@ -113,7 +113,7 @@ OF_THE_PARTS: dict[str, tuple[Any, Any, Callable[[Training], Any], Any, Any]] = 
     "symmetry": (True, False, lambda t: isinstance(t.model.symmetry, Symmetry), True, False),
     "hindsight": (0, 2, lambda t: getattr(t.model.replay, "goals", 0), 0, 2),
     "curriculum": (0.0, 0.5, lambda t: t.env.curriculum is not None, False, True),
-    "eval_episodes": (2, 3, lambda t: len(t.starts), 2, 3),
+    "eval_episodes": (2, 3, lambda t: len(t.evaluate().success), 2, 3),
 }
 
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 from rtg.errors import UserError
-from rtg.files import versions
+from rtg.files import run_folder, versions
 from rtg.run import effective_config, run_args
 from rtg.run.plan import make_plan
 from rtg.run.run_args import Override
@@ -79,6 +79,13 @@ def test_a_run_of_the_same_kind_is_found_and_taken_over(made, tmp_path):
     names = ["generation.json", "transitions.npz", "versions.json"]
     assert sorted(path.name for path in new.iterdir()) == names
     assert versions.generator(new) == versions.generator(made) != {}
+
+
+def test_those_of_another_forward_simulator_are_not_found(made, tmp_path):
+    found = json.loads((made / "versions.json").read_text())
+    found["generator"][versions.ENGINE_KEY] = "box2d 1.0"
+    run_folder.write_json(made / "versions.json", found)
+    assert find(generation_key(CONFIG), tmp_path, "seed-1") is None
 
 
 def test_another_kind_or_seed_is_not_found(made, tmp_path):

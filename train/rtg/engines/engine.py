@@ -76,7 +76,11 @@ class _Outer:
         self._name: str = config.forward.engine
         made = _class_of(self._name)
         self._engine: Engine = self._guarded(lambda: made(Scene(config)), "when it was made")
-        self.version: str = getattr(self._engine, "version", "") or _source_digest(made)
+        own: Any = self._guarded(lambda: getattr(self._engine, "version", None), "for its version")
+        if own is not None and not (isinstance(own, str) and own.isprintable()):
+            raise UserError(f"{self._prefix()}: its version is {own!r}; legal: a text of one line")
+        parts = [own or "", "" if own and self._name not in _OURS else _source_digest(made)]
+        self.version = " ".join(filter(None, parts))
 
     def __reduce__(self) -> tuple[Callable[[_core.Config], Simulator], tuple[_core.Config]]:
         return simulator, (self._config,)
@@ -205,10 +209,12 @@ def identity(config: _core.Config) -> str:
 
     What simulators of different identities say is not mixed. Raises as simulator() does.
     """
-    name: str = config.forward.engine
-    if config.has_built_in_engine:
-        return f"{name} {_core.BOX2D_VERSION}" if name == "box2d" else name
-    return f"{name} {_Outer(config).version}"
+    name, friction = config.forward.engine, config.forward.friction
+    version = _core.BOX2D_VERSION if name == "box2d" else ""
+    if not config.has_built_in_engine:
+        version = _Outer(config).version
+    own_friction = f"friction x {friction:g}" if friction != 1.0 else ""
+    return " ".join(filter(None, (name, version, own_friction)))
 
 
 def replay_function(config: _core.Config) -> Replay | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from xml.etree import ElementTree
 
 import numpy as np
@@ -22,6 +23,7 @@ _STILL = np.zeros(2)
 _COLUMNS = ("x", "y", "theta", "value")  # names of MuJoCo's joints, after the number of the body
 _VALUE = 3
 _BATCH = 256  # pushes at a time, for the sake of memory
+_POOL = threading.Lock()  # MuJoCo has one pool of threads in a process, for one caller at a time
 
 
 def _turned(angle: Floats | float, v: Floats) -> Floats:
@@ -349,7 +351,8 @@ class MuJoCo:
         """Returns the states after each step. `robot`: where it is drawn to. [N, steps, 3]"""
         control = np.zeros((*robot.shape[:2], self._model.nu))
         control[:, :, :3] = robot
-        after, _ = self._rollout.rollout(
-            self._model, self._data, states, control, persistent_pool=True
-        )
+        with _POOL:
+            after, _ = self._rollout.rollout(
+                self._model, self._data, states, control, persistent_pool=True
+            )
         return after

@@ -42,7 +42,7 @@ def read(path: Path) -> dict[str, Any]:
             f"{path}: no such file; legal: a checkpoint or policy file of RTG"
         ) from None
     except OSError as error:
-        raise_if_of_the_machine(error)
+        raise_if_of_the_machine(error, path)
         raise UserError(f"{path}: {error.strerror or error}; legal: a file to read") from None
     except Exception as error:  # the unpickler may raise any error on foreign bytes
         raise UserError(f"{path}: is damaged or foreign; legal: a file that RTG wrote") from error

@@ -116,7 +116,7 @@ def read_arrays(path: Path, names: Iterable[str], legal: str) -> dict[str, Array
     except FileNotFoundError:
         raise DatasetError(f"{path}: no such file; legal: {legal}") from None
     except (OSError, ValueError) as error:
-        raise_if_of_the_machine(error)
+        raise_if_of_the_machine(error, path)
         why = (isinstance(error, OSError) and error.strerror) or error
         raise DatasetError(
             f"{path}: is not a transition file, or damaged ({why}); legal: {legal}"

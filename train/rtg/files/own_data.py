@@ -131,7 +131,7 @@ def read(path: Path, task: _core.Task) -> OwnData:
     if arrays is None:
         folder = file.resolve().parent
         origin = {"format": "run", "name": f"{folder.name}/{file.name}"}
-        if engine := versions.generator(folder).get(versions.ENGINE_KEY):
+        if engine := versions.engine_of_data(folder):
             origin[versions.ENGINE_KEY] = engine
     try:
         rows = rows_in_metres(task, **arrays) if arrays else _rows_of_run(file, task)

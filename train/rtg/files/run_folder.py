@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rtg import _core, errors, paths
-from rtg.errors import UserError
+from rtg.errors import UserError, raise_if_of_the_machine
 from rtg.files import replay_gaps, whole_files
 
 # Keys of every summary.json; train/SUMMARY.md explains them. A value that was not measured is null.
@@ -148,6 +148,7 @@ def read_text(path: Path) -> str:
     try:
         return whole_files.read(path).decode()
     except (OSError, UnicodeDecodeError) as error:
+        raise_if_of_the_machine(error, path)
         why = (isinstance(error, OSError) and error.strerror) or "is no UTF-8"
         raise UserError(f"{path}: {why}; legal: the file as the run wrote it") from None
 
@@ -205,6 +206,7 @@ def read_json(path: Path) -> dict[str, Any]:
     except (FileNotFoundError, NotADirectoryError):
         return {}
     except OSError as error:
+        raise_if_of_the_machine(error, path)
         raise UserError(f"{path}: {error.strerror}; legal: a file to read, or no file") from None
     except (ValueError, RecursionError):
         raise UserError(

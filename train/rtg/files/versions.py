@@ -122,6 +122,17 @@ def generator(run: Path) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
+def engine_of_data(run: Path) -> str | None:
+    """Returns the forward simulator that the transitions of a run are of; None if it is unknown.
+
+    Those of a run with --data are of the run that they were taken from.
+    """
+    made_by = generator(run)
+    data = made_by.get("data")
+    found = made_by.get(ENGINE_KEY) or (data.get(ENGINE_KEY) if isinstance(data, dict) else None)
+    return found if isinstance(found, str) else None
+
+
 def versions(config: _core.Config) -> dict[str, Any]:
     """Returns the versions of this program, its machine and the forward simulator.
 

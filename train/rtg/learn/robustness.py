@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
-from rtg.engines import ENGINES
+from rtg.engines import ENGINES, EngineError
 from rtg.errors import UserError
 from rtg.learn.evaluation import FINAL_SEED, Values, evaluate
 
@@ -29,6 +29,7 @@ _FACTORS = (0.5, 0.7, 1.3, 2.0)  # of friction and of masses
 _STRIDES = (0.75, 0.9, 1.1, 1.25)  # factors
 _COASTING = (10.0, 4.0, 2.0)  # physics.damping, with inertia
 _NOISE_SEED = 5
+_SIMULATOR = "simulator"  # the group of other forward simulators
 _REASON_LENGTH = 100  # characters, of why a variant is not possible
 
 
@@ -174,7 +175,7 @@ def variants(config: _core.Config) -> list[Variant]:
         found.append(Variant("coasting", f"damping {damping}", settings))
     for engine in ENGINES:
         if engine != config.forward.engine:
-            found.append(Variant("simulator", engine, (f"forward.engine={engine}",)))
+            found.append(Variant(_SIMULATOR, engine, (f"forward.engine={engine}",)))
     return sorted(found, key=lambda variant: [v.group for v in found].index(variant.group))
 
 
@@ -214,6 +215,8 @@ def evaluate_variant(
     observe = _seen(config.task, variant.noise)
     try:
         found = evaluate(changed, values, starts, config.learner_discount, observe)
-    except UserError as error:  # an extra that is not installed
+    except (UserError, EngineError) as error:
+        if variant.group != _SIMULATOR:  # the run's own is not to be had
+            raise
         return Row(variant, None, None, _shortened(error))
     return Row(variant, float(found.success.mean()), float(found.length.mean()))

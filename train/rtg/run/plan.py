@@ -140,7 +140,8 @@ def _check_engine(own: OwnData, data: str | None, engine: str) -> None:
     if other != engine:
         raise UserError(
             f"--data {data}: its transitions are of the forward simulator {other}, and this run's "
-            f"is {engine}; legal: the same (--set forward.engine={other.split()[0]})"
+            f"is {engine}; legal: the same forward.engine, version and forward.friction, or arrays "
+            "of one's own (docs/data.md)"
         )
 
 
