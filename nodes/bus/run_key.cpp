@@ -44,7 +44,8 @@ RunKey RunKey::random(const std::string& name) {
 }
 
 RunKey RunKey::read(const std::filesystem::path& file) {
-  const std::string legal = "; legal: the key file of a run, which its owner alone can read, or none, for a new key";
+  const std::string legal =
+      "; legal: the key file of a run, which its owner alone can read, or none, for a new key";
   const files::Content content =
       files::read_regular(file, kLongestFile, files::Readers::kOwnerAlone);
   if (!content.defect.empty())
@@ -58,7 +59,8 @@ RunKey RunKey::read(const std::filesystem::path& file) {
                                ? text.substr(kBeforeName, text.size() - kBeforeName - 1)
                                : std::string());
   if (key.name_.empty() || key.name_.find('\n') != std::string::npos || key.line() != text)
-    throw std::invalid_argument(file.string() + ": is no key file, or was changed since it was written" + legal);
+    throw std::invalid_argument(file.string() +
+                                ": is no key file, or was changed since it was written" + legal);
   return key;
 }
 

@@ -60,7 +60,8 @@ std::string refusal(const std::filesystem::path& file) {
 TEST(RunKey, FilesThatAreNoKeysOrNoSecretsAreNamed) {
   const testing::Folder folder;
   const std::filesystem::path file = folder.path / "run.key";
-  const std::string legal = "; legal: the key file of a run, which its owner alone can read, or none, for a new key";
+  const std::string legal =
+      "; legal: the key file of a run, which its owner alone can read, or none, for a new key";
   EXPECT_EQ(refusal(file), file.string() + ": no such file" + legal);
   EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is no regular file" + legal);
   RunKey::random("test").write(file);
@@ -69,7 +70,8 @@ TEST(RunKey, FilesThatAreNoKeysOrNoSecretsAreNamed) {
        {std::string(), right.substr(0, 64), right.substr(0, 98), right.substr(0, 97) + "\n",
         right.substr(0, right.size() - 1), right + "more\n", "a" + right, right.substr(1)}) {
     std::ofstream(file) << text;
-    EXPECT_EQ(refusal(file), file.string() + ": is no key file, or was changed since it was written" + legal)
+    EXPECT_EQ(refusal(file),
+              file.string() + ": is no key file, or was changed since it was written" + legal)
         << text;
   }
   std::ofstream(file) << right;
