@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <regex>
 #include <stdexcept>
 #include <system_error>
@@ -77,15 +78,38 @@ void clear_for_preset(ConfigNode& root, const std::string& section, Section (*va
   }
 }
 
-/// Removes the file's values of all keys that methods set. A method on the command line takes
-/// precedence over these values.
-void clear_for_method(ConfigNode& root) {
+/// Returns the method of that name; nothing if there is none, which is told elsewhere.
+std::optional<Method> method_named(std::string_view name) {
+  const auto found = std::ranges::find(kMethods, name);
+  if (found == kMethods.end()) return std::nullopt;
+  return static_cast<Method>(found - kMethods.begin());
+}
+
+/// Returns the value that `method` gives to a key; nothing if it gives none.
+std::optional<std::string_view> value_of(std::optional<Method> method,
+                                         const MethodSetting& setting) {
+  if (!method) return std::nullopt;
+  for (const auto& [section, key, value, is_size] : settings_of(*method))
+    if (section == setting.section && key == setting.key) return value;
+  return std::nullopt;
+}
+
+/// Removes the file's values of all keys that methods set: the method `name` of the command line
+/// takes precedence over them. A size stays that neither this method nor that of the file gives.
+void clear_for_method(ConfigNode& root, std::string_view name) {
+  const ConfigEntry* of_file = find(root, "run", "method");
+  const auto before = of_file ? method_named(of_file->value.scalar) : RunConfig{}.method;
+  const auto is_to_go = [&](const MethodSetting& setting, const ConfigNode& value) {
+    return !setting.is_size || value_of(method_named(name), setting) ||
+           value_of(before, setting) == value.scalar;
+  };
   for (std::size_t k = 0; k < kMethods.size(); ++k)
     for (const MethodSetting& setting : settings_of(static_cast<Method>(k)))
       for (ConfigEntry& entry : root.entries)
         if (entry.key == setting.section)
-          std::erase_if(entry.value.entries,
-                        [&](const ConfigEntry& field) { return field.key == setting.key; });
+          std::erase_if(entry.value.entries, [&](const ConfigEntry& field) {
+            return field.key == setting.key && is_to_go(setting, field.value);
+          });
 }
 
 /// Removes the file's strides, which the command line gives, by whichever of the two keys.
@@ -103,7 +127,8 @@ void apply_overrides(ConfigNode& root, std::span<const std::string> overrides) {
     if (setting.starts_with("reverse.preset="))
       clear_for_preset(root, "reverse", reverse::reverse_preset);
     if (setting.starts_with("train.preset=")) clear_for_preset(root, "train", train_preset);
-    if (setting.starts_with("run.method=")) clear_for_method(root);
+    if (setting.starts_with("run.method="))
+      clear_for_method(root, std::string_view(setting).substr(sizeof("run.method=") - 1));
     if (setting.starts_with("task.push.stride")) clear_for_strides(root);
   }
   for (const std::string& setting : overrides) apply_override(root, setting);
@@ -128,7 +153,7 @@ void read_section(const ConfigNode& root, const std::string& name, Section& conf
 void apply_method(ConfigNode& root) {
   RunConfig run;
   read_section(root, "run", run);
-  for (const auto& [name, key, value] : settings_of(run.method)) {
+  for (const auto& [name, key, value, is_size] : settings_of(run.method)) {
     const std::string origin =
         "run.method " + std::string(kMethods[static_cast<std::size_t>(run.method)]);
     ConfigNode& section = section_of(root, name, origin);

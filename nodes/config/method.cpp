@@ -34,7 +34,7 @@ const std::array<Settings, kMethods.size()>& table() {
       unguided({{"search", "generator", "random"}, {"train", "offline_share", "-1.0"}}),
       unguided({{"search", "generator", "scatter"}, {"train", "offline_share", "-1.0"}}),
       // Few kinematic steps come out in the simulator: narrow trees of them end early.
-      Settings{{"search", "generator", "naive"}, {"search", "breadth", "100"}},
+      Settings{{"search", "generator", "naive"}, {"search", "breadth", "100", true}},
       Settings{{"search", "generator", "forward"}},
       Settings{{"search", "generator", "rrbs"}},
       Settings{{"search", "generator", "rrbs"},

@@ -413,6 +413,19 @@ TEST(Config, AMethodAmongTheOverridesStandsAboveTheFileButNotAboveTheOthers) {
   EXPECT_EQ(parsed(file).search.generator, search::Generator::kNaive);
 }
 
+TEST(Config, ABreadthOfTheTaskIsThatOfEachMethodThatHasNoneOfItsOwn) {
+  const auto breadth = [](const std::string& file, const std::string& method) {
+    const std::vector<std::string> overrides{"run.method=" + method};
+    return parsed(file, overrides).search.breadth;
+  };
+  const std::string task = "search: {breadth: 70}\n";
+  EXPECT_EQ(breadth(task, "ddqn_rtg"), 70);
+  EXPECT_EQ(breadth(task, "bc_rtg"), 70);
+  EXPECT_EQ(breadth(task, "ddqn_naive"), 100);
+  const std::string naive = "search: {breadth: 100}\nrun: {method: ddqn_naive}\n";
+  EXPECT_EQ(breadth(naive, "ddqn_rtg"), search::SearchConfig{}.breadth);
+}
+
 TEST(Config, CloningImitatesTheStepsOfTrees) {
   const std::vector<std::string> cloning{"train.learner=cloning", "train.interact=false"};
   EXPECT_EQ(refusal("search: {generator: rrbs}\n", cloning), "none");
