@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rtg import _core
+from rtg import _core, engines
 from rtg.arguments import checked, numbers
 from rtg.errors import UserError
 from rtg.files import own_data, run_folder
@@ -106,7 +106,7 @@ def train(
         raise UserError(f"{run}: holds a learner already; legal: another folder")
     run.mkdir(parents=True, exist_ok=True)
     run_folder.write_config(run / "config.yaml", config.yaml)
-    own_data.store(run, config, given)
+    own_data.store(run, config, given, engines.identity(config))
     threads = th.get_num_threads()
     th.set_num_threads(1)  # networks this small are slower on more
     try:

@@ -199,21 +199,24 @@ def test_check_makes_the_engine_and_names_it(capsys: pytest.CaptureFixture[str])
     assert cli.main(["check", "gathering", "--set", "forward.engine=toy_engines:NoEngine"]) == 2
 
 
+def failing_run(engine: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
+    """Returns output and errors of a run with a toy engine, which ends with status 1."""
+    words = ["gathering", "--in-process", "--no-train", "--transitions", "300"]
+    setting = ["--set", f"forward.engine=toy_engines:{engine}"]
+    assert cli.main([*words, *setting, "--out", str(folder)]) == 1
+    out, err = capsys.readouterr()
+    return out, err
+
+
 def test_a_run_whose_engine_simulates_nothing_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["gathering", "--in-process", "--no-train", "--transitions", "100"]
-    setting = ["--set", "forward.engine=toy_engines:Helpless"]
-    assert cli.main([*words, *setting, "--out", str(tmp_path / "run")]) == 1
-    told = capsys.readouterr().out
+    told, _ = failing_run("Helpless", tmp_path / "run", capsys)
     assert "bottleneck: forward simulator: it could not simulate " in told
 
 
 def test_a_run_with_a_broken_engine_ends_with_its_traceback(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["gathering", "--in-process", "--no-train", "--transitions", "300"]
-    setting = ["--set", "forward.engine=toy_engines:Broken"]
-    assert cli.main([*words, *setting, "--out", str(tmp_path / "run")]) == 1
-    told = capsys.readouterr().err
+    _, told = failing_run("Broken", tmp_path / "run", capsys)
     assert "ZeroDivisionError: no such place" in told and "in the state [[" in told

@@ -69,7 +69,7 @@ KINDS = {
         lambda path: best_episode.read(path.parent, 4),
     ),
     "transitions.npz": Kind(write_transitions, dataset.read),
-    "versions.json": Kind(lambda path: versions.write(path.parent, CONFIG, {}), JSON.read),
+    "versions.json": Kind(lambda path: versions.write(path.parent, "box2d", {}), JSON.read),
     "config.yaml": Kind(
         lambda path: run_folder.write_config(path, CONFIG.yaml), effective_config.load_written
     ),

@@ -153,7 +153,7 @@ def test_a_run_stores_them_sealed_and_tells_of_their_file(tmp_path, generated):
     poses = generated[0].poses.copy()
     poses[:2] = TASK.start
     rows = generated[0]._replace(poses=poses)
-    own_data.store(tmp_path, CONFIG, OwnData(rows, ORIGIN))
+    own_data.store(tmp_path, CONFIG, OwnData(rows, ORIGIN), "box2d")
     stored = dataset.read(tmp_path / "transitions.npz", TASK)
     assert np.array_equal(stored.poses, rows.poses)
     assert versions.sealed_digest(tmp_path / "transitions.npz") is not None

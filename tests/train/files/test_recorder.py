@@ -40,7 +40,7 @@ def test_no_row_is_a_legal_data_set_too(tmp_path):
 
 
 def test_a_finished_file_is_sealed_beside_the_versions_of_its_program(tmp_path):
-    versions.write(tmp_path, CONFIG, {"git_revision": "abc"})
+    versions.write(tmp_path, "box2d", {"git_revision": "abc"})
     Recorder(CONFIG).finish(tmp_path / "transitions.npz")
     digest = versions.digest(tmp_path / "transitions.npz")
     assert versions.sealed_digest(tmp_path / "transitions.npz") == digest

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from rtg import engines
 from rtg.errors import UserError
 from rtg.files import run_folder, versions
 from rtg.run import effective_config, run_args
@@ -27,7 +28,7 @@ def made(tmp_path):
     run = tmp_path / "ddqn_naive" / "seed-1"
     run.mkdir(parents=True)
     (run / "config.yaml").write_text(effective_config.load(TINY).yaml)
-    versions.write(run, CONFIG)
+    versions.write(run, engines.identity(CONFIG))
     for name in ("transitions.npz", "generation.json"):
         (run / name).write_text(name)
     versions.seal(run / "transitions.npz")
@@ -108,7 +109,7 @@ def test_transitions_that_were_changed_are_neither_taken_over_nor_gone_on_with(m
 
 def test_a_set_that_was_not_sealed_is_not_whole(made):
     """As if the run was killed between writing and sealing it."""
-    versions.write(made, CONFIG, {"core_sha256": versions.core_digest()})
+    versions.write(made, "box2d", {"core_sha256": versions.core_digest()})
     assert not is_generated(made)
 
 
@@ -132,7 +133,7 @@ def test_what_another_program_made_or_is_not_whole_is_not_found(made, tmp_path, 
 def test_what_another_program_made_stays_that_of_the_other(made, tmp_path):
     """It does so even when this one goes on with the run."""
     other = {"git_revision": "another", "core_sha256": "another"}
-    versions.write(made, CONFIG, other)
+    versions.write(made, engines.identity(CONFIG), other)
     versions.seal(made / "transitions.npz")
     other["sha256"] = {"transitions.npz": versions.digest(made / "transitions.npz")}
     make_plan(run_args.parse(["--resume", "--out", str(made)]))

@@ -89,7 +89,7 @@ def merge(run: Path, shards: Sequence[Path]) -> None:
     Raises UserError if files of the shards are missing or damaged.
     """
     config = _core.Config.from_file(run / "config.yaml")
-    versions.write(run, config)
+    versions.write(run, versions.engine_of_data(shards[0]))
     recorder = Recorder(config)
     for shard in shards:
         found = dataset.read(shard / "transitions.npz", config.task)

@@ -155,9 +155,12 @@ def figures(task: _core.Task, rows: Rows) -> dict[str, Any]:
     }
 
 
-def store(run: Path, config: _core.Config, own: OwnData) -> None:
-    """Makes the transitions those of a run: transitions.npz, generation.json, versions.json."""
-    versions.write(run, config, {"data": own.origin})
+def store(run: Path, config: _core.Config, own: OwnData, engine: str) -> None:
+    """Makes the transitions those of a run: transitions.npz, generation.json, versions.json.
+
+    `engine`: the identity of the run's forward simulator.
+    """
+    versions.write(run, engine, {"data": own.origin})
     recorder = Recorder(config)
     recorder.add(own.rows)
     counts = {

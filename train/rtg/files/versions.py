@@ -12,7 +12,7 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-from rtg import _core, engines, paths
+from rtg import _core, paths
 from rtg.errors import UserError
 from rtg.files import run_folder
 
@@ -102,13 +102,16 @@ def check_seal(path: Path) -> None:
         )
 
 
-def check_engine(run: Path, config: _core.Config) -> None:
-    """Raises UserError if another forward simulator than that of `config` has worked on the run."""
+def check_engine(run: Path, engine: str) -> None:
+    """Raises UserError if another forward simulator than `engine` has worked on the run.
+
+    `engine`: engines.identity(), as in the other functions.
+    """
     file = run / FILE
-    before, now = run_folder.read_json(file).get(ENGINE_KEY), engines.identity(config)
-    if before not in (None, now):
+    before = run_folder.read_json(file).get(ENGINE_KEY)
+    if before not in (None, engine):
         raise UserError(
-            f"{file}: the run was begun with the forward simulator {before}, and this is {now}; "
+            f"{file}: the run was begun with the forward simulator {before}, and this is {engine}; "
             f"legal: {before}, or a new run"
         )
 
@@ -133,8 +136,8 @@ def engine_of_data(run: Path) -> str | None:
     return found if isinstance(found, str) else None
 
 
-def versions(config: _core.Config) -> dict[str, Any]:
-    """Returns the versions of this program, its machine and the forward simulator.
+def versions(engine: str | None) -> dict[str, Any]:
+    """Returns the versions of this program and its machine, beside that of the forward simulator.
 
     None stands where a value is unknown.
     """
@@ -146,13 +149,13 @@ def versions(config: _core.Config) -> dict[str, Any]:
         "processor": _processor(),
         "instruction_set": _core.PROCESSOR,
         "memory_gib": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
-        ENGINE_KEY: engines.identity(config),
+        ENGINE_KEY: engine,
         "packages": {name: importlib.metadata.version(name) for name in _PYTHON_PACKAGES},
         "debian": {name: _debian_version(name) for name in _DEBIAN_PACKAGES},
     }
 
 
-def write(run: Path, config: _core.Config, made_by: dict[str, Any] | None = None) -> None:
+def write(run: Path, engine: str | None, made_by: dict[str, Any] | None = None) -> None:
     """Writes versions.json of a run that this program begins or resumes. The file holds:
 
     - the versions of this program;
@@ -161,7 +164,7 @@ def write(run: Path, config: _core.Config, made_by: dict[str, Any] | None = None
 
     Raises UserError if the previous versions.json is damaged.
     """
-    found, before = versions(config), run_folder.read_json(run / FILE)
+    found, before = versions(engine), run_folder.read_json(run / FILE)
     if made_by is None:
         made_by = {key: found[key] for key in (*_REVISION_KEYS, ENGINE_KEY)}
         made_by["core_sha256"] = core_digest()

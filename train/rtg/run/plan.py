@@ -209,8 +209,9 @@ def make_plan(args: RunArgs) -> RunPlan:
     if args.resume:
         _check_resumed(args.file, config)
         _check_stored(args.file.parent, config)
-        versions.check_engine(args.file.parent, config)
     engine = engines.identity(config)  # fails here, before there is a folder
+    if args.resume:
+        versions.check_engine(args.file.parent, engine)
     check(config, args.train)
     _check_search(config, overrides, args.data)
     own = None if args.data is None else _read_own_data(args.data, config.task)
@@ -234,11 +235,11 @@ def make_plan(args: RunArgs) -> RunPlan:
     with run_folder.write_errors_as_user_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
         if own is not None:  # before there is a run to go on with, which would generate its own
-            own_data.store(folder, config, own)
+            own_data.store(folder, config, own, engine)
         name = f"{folder.name}-{secrets.token_hex(4)}"
         run_folder.write_run_name(folder, name)
         run_folder.write_config(folder / "config.yaml", config.yaml)
     plan = RunPlan(folder, name, config, args.train, args.resume, tuple(notes), args.sinks)
     if own is None:
-        versions.write(folder, config, versions.generator(folder) if plan.is_generated() else None)
+        versions.write(folder, engine, versions.generator(folder) if plan.is_generated() else None)
     return plan

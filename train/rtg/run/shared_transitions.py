@@ -77,8 +77,8 @@ def take_over(source: Path, run: Path) -> None:
     Raises UserError if they were changed.
     """
     versions.check_seal(source / _FILES[0])
-    config = effective_config.load_written(source / "config.yaml")  # generates the same
-    versions.write(run, config, versions.generator(source))
+    made_by = versions.generator(source)
+    versions.write(run, made_by.get(versions.ENGINE_KEY), made_by)
     for name in _FILES:
         draft = run / f".{name}.{os.getpid()}"
         try:
