@@ -33,6 +33,23 @@ def test_states_are_in_metres() -> None:
     np.testing.assert_allclose(task.outer(task.inner(off[None])), off[None], atol=1e-12)
 
 
+def test_poses_of_a_run_are_not_taken_for_metres_where_a_body_is_fixed() -> None:
+    task = rtg.load_task("drawer")
+    in_metres, in_units = task.start()[None], task.core.start[None]
+    wrong = r"row 0 has the fixed cabinet at \(0 m, 9.168 m, .*; legal: its place, \(0 m, 5.73 m, "
+    rows = rtg.forward.Box2D(task).push(in_metres, [0])[0]
+    np.testing.assert_array_equal(task.inner(rows)[0, 3], task.core.start[3])  # to the bit
+    for take in (
+        lambda states: rtg.ReverseSimulator(task).solve(states, [0]),
+        lambda states: rtg.ReverseSimulator(task).solve(states[0], [0]),
+        lambda states: rtg.forward.Box2D(task).push(states, [0]),
+        task.succeeded,
+    ):
+        take(in_metres)
+        with pytest.raises(ValueError, match=wrong):
+            take(in_units)
+
+
 @pytest.mark.parametrize("name", ["gathering", "push_t", "art_manip", "drawer"])
 def test_each_entry_of_an_observation_has_a_name(name: str) -> None:
     task = rtg.load_task(name)

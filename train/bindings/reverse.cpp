@@ -29,6 +29,7 @@ struct TaskReverse {
   config::Config config;
   std::size_t bodies, sub_steps;
   int actions;
+  double metre, kilogram;  // in the units of the simulator
   reverse::ReverseSimulator simulator;
 
   explicit TaskReverse(const config::Config& given)
@@ -37,8 +38,19 @@ struct TaskReverse {
         sub_steps(
             static_cast<std::size_t>(config.physics.sub_steps + config.physics.settling_steps())),
         actions(action_count(config.task.push)),
+        metre(1.0 / config.task.units.length),
+        kilogram(metre * metre / config.task.units.density),
         simulator(config.task.scene, config.physics, config.task.push, config.reverse) {}
 };
+
+/// Writes x [m], y [m], θ [rad] of each body to `out`.
+void write_in_metres(const Poses& poses, double metre, double* out) {
+  for (const Pose& p : poses) {
+    *out++ = p.x / metre;
+    *out++ = p.y / metre;
+    *out++ = p.theta;
+  }
+}
 
 /// An array [N, ...] of which each solve writes a row; rows that are not written are NaN.
 struct Rows {
@@ -52,7 +64,9 @@ struct Rows {
 };
 
 /// The contacts of all solves, one after another.
-nb::dict contact_arrays(const std::vector<reverse::ReverseResult>& results) {
+nb::dict contact_arrays(const TaskReverse& reverse,
+                        const std::vector<reverse::ReverseResult>& results) {
+  const double metre = reverse.metre, newton = reverse.kilogram * metre;
   std::size_t count = 0;
   for (const auto& r : results) count += r.solution ? r.solution->contacts.size() : 0;
   OwnedArray<std::int64_t> solve(count), sub_step(count), body(count), other(count);
@@ -65,9 +79,11 @@ nb::dict contact_arrays(const std::vector<reverse::ReverseResult>& results) {
       sub_step.data[at] = c.sub_step;
       body.data[at] = c.body;
       other.data[at] = c.other;
-      std::copy_n(c.point.data(), 2, point.data.get() + 2 * at);
-      std::copy_n(c.normal.data(), 2, normal.data.get() + 2 * at);
-      force.data[at++] = c.force;
+      for (int i = 0; i < 2; ++i) {
+        point.data[2 * at + i] = c.point[i] / metre;
+        normal.data[2 * at + i] = c.normal[i];
+      }
+      force.data[at++] = c.force / newton;
     }
   }
   nb::dict out;
@@ -85,6 +101,7 @@ nb::dict result_arrays(const TaskReverse& reverse,
                        const std::vector<reverse::ReverseResult>& results) {
   const std::size_t count = results.size(), levels = reverse.sub_steps + 1;
   const std::size_t bodies = reverse.bodies;
+  const double metre = reverse.metre, joule = reverse.kilogram * metre * metre;
   constexpr auto kStarts = static_cast<std::size_t>(reverse::kMaxPredecessors);
   OwnedArray<std::int64_t> status(count), iterations(count), found(count);
   Rows starts(count, kStarts * bodies * 3), trajectory(count, levels * bodies * 3);
@@ -95,13 +112,13 @@ nb::dict result_arrays(const TaskReverse& reverse,
     iterations.data[k] = r.iterations;
     found.data[k] = static_cast<std::int64_t>(r.predecessors.size());
     for (std::size_t n = 0; n < r.predecessors.size(); ++n)
-      write_state(r.predecessors[n], starts.row(k) + n * bodies * 3);
+      write_in_metres(r.predecessors[n], metre, starts.row(k) + n * bodies * 3);
     if (!r.solution) continue;
     for (std::size_t n = 0; n < levels; ++n)
-      write_state(r.solution->trajectory[n], trajectory.row(k) + n * bodies * 3);
+      write_in_metres(r.solution->trajectory[n], metre, trajectory.row(k) + n * bodies * 3);
     for (std::size_t n = 0; n < reverse.sub_steps; ++n)
       std::copy_n(r.solution->controls[n].data(), 3, controls.row(k) + 3 * n);
-    figures.row(k)[0] = r.solution->objective;
+    figures.row(k)[0] = r.solution->objective / joule;
     figures.row(k)[1] = r.solution->infeasibility;
     figures.row(k)[2] = r.solution->stationarity;
   }
@@ -113,7 +130,7 @@ nb::dict result_arrays(const TaskReverse& reverse,
   out["trajectory"] = trajectory.numbers.release({count, levels, bodies, 3});
   out["controls"] = controls.numbers.release({count, reverse.sub_steps, 3});
   out["figures"] = figures.numbers.release({count, 3});
-  out["contacts"] = contact_arrays(results);
+  out["contacts"] = contact_arrays(reverse, results);
   return out;
 }
 
@@ -127,6 +144,7 @@ nb::dict solve(const TaskReverse& reverse, const StateArray& ends, const ActionA
   {
     const nb::gil_scoped_release release;
     std::vector<reverse::ReverseJob> jobs;
+    jobs.reserve(ends.shape(0));
     for (std::size_t k = 0; k < ends.shape(0); ++k)
       jobs.push_back({state_at(ends, k), static_cast<int>(actions.data()[k]), true});
     const auto solve_some = [&](std::span<const reverse::ReverseJob> some) {
@@ -142,9 +160,8 @@ nb::dict solve(const TaskReverse& reverse, const StateArray& ends, const ActionA
 void bind_reverse(nb::module_& module) {
   static constexpr auto kStatusNames = status_names();
   module.attr("SOLVE_STATUSES") = names_of(kStatusNames);
-  nb::class_<TaskReverse>(
-      module, "ReverseSimulator",
-      "Solves the reverse problems of a task, in units of the core; see rtg.reverse.")
+  nb::class_<TaskReverse>(module, "ReverseSimulator",
+                          "Solves the reverse problems of a task; see rtg.reverse.")
       .def(nb::init<const config::Config&>(), nb::arg("config"))
       .def("__reduce__",
            [](const TaskReverse& reverse) {
@@ -153,7 +170,8 @@ void bind_reverse(nb::module_& module) {
       .def("solve", &solve, nb::arg("ends"), nb::arg("actions"), nb::arg("threads") = 1,
            R"(Solves N problems. [N, bodies, 3], [N]
 
-Returns the arrays "status" (into SOLVE_STATUSES), "iterations" and "found" (number of
+States to end in are in units of the core, what is found in metres, kilograms and seconds, but
+infeasibility and stationarity. Returns the arrays "status" (into SOLVE_STATUSES), "iterations" and "found" (number of
 starts) [N], "starts" [N, 8, bodies, 3], "trajectory" [N, h + 1, bodies, 3], "controls" [N,
 h, 3], "figures" (objective, infeasibility, stationarity) [N, 3], NaN where there is none,
 and "contacts": the arrays "solve", "sub_step", "body", "other", "force" [C], "point" and

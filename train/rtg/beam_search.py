@@ -20,12 +20,18 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Nodes:
-    """The nodes of a tree, K in all: states from which the goal can be reached."""
+    """The nodes of a tree, K in all: states from which the goal can be reached.
 
-    states: Floats  # [K, bodies, 3]
-    actions: Integers  # the push that leads to the parent; -1 in goal states [K]
-    parents: Integers  # index of the node that the push leads to; -1 [K]
-    depths: Integers  # pushes until the goal [K]
+    - `states`: [K, bodies, 3] in m and rad.
+    - `actions`: the push that leads to the parent; -1 in goal states. [K]
+    - `parents`: index of the node that the push leads to, or -1. [K]
+    - `depths`: pushes until the goal. [K]
+    """
+
+    states: Floats
+    actions: Integers
+    parents: Integers
+    depths: Integers
 
     def __len__(self) -> int:
         return len(self.depths)

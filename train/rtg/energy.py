@@ -15,11 +15,14 @@ Floats = NDArray[np.float64]
 
 
 class Contact(NamedTuple):
-    """A vertex of `body` that may touch `other`, or a limit of the joint between them."""
+    """A vertex of `body` that may touch `other`, or a limit of the joint between them.
+
+    `friction`: coefficient of the pair.
+    """
 
     body: str
     other: str
-    friction: float  # coefficient of the pair
+    friction: float
 
 
 class StepEnergy:

@@ -18,15 +18,23 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Contacts:
-    """The contacts of N solves that exert forces, C in all."""
+    """The contacts of N solves that exert forces, C in all.
 
-    solve: Integers  # to which of the N solves each belongs [C]
-    sub_step: Integers  # at whose end it acts; 0: at the start of the push [C]
-    body: Integers  # on which the force acts [C]
-    other: Integers  # which exerts it [C]
-    point: Floats  # [C, 2] in m
-    normal: Floats  # unit vectors from `other` to `body` [C, 2]
-    force: Floats  # normal forces [C] in N
+    - `solve`: to which of the N solves each belongs. [C]
+    - `sub_step`: at whose end it acts; 0: at the start of the push. [C]
+    - `body`, `other`: on which the force acts, and which exerts it. [C]
+    - `point`: [C, 2] in m.
+    - `normal`: unit vectors from `other` to `body`. [C, 2]
+    - `force`: normal forces. [C] in N
+    """
+
+    solve: Integers
+    sub_step: Integers
+    body: Integers
+    other: Integers
+    point: Floats
+    normal: Floats
+    force: Floats
 
 
 @dataclass(frozen=True)
@@ -37,16 +45,26 @@ class ReverseSolutions:
     robot, whose forces are shares tanh c of their bounds, and the contact forces. `starts` are the
     states to go on from: the beginning of the trajectory, and others from which the push meets the
     objects later.
+
+    - `status`: "converged", "acceptable", "pruned", "infeasible", ... [N]
+    - `iterations`: of the SQP. [N]
+    - `starts`: for each solve [up to 8, bodies, 3] in m and rad; empty without a solution.
+    - `trajectory`: [N, h + 1, bodies, 3] in m and rad.
+    - `controls`: force x, force y and torque of each sub-step, before tanh. [N, h, 3]
+    - `objective`: J of eq. (6). [N] in kg m²
+    - `infeasibility`: largest residual of the constraints, in the units of the core. [N]
+    - `stationarity`: largest entry of the Lagrangian's gradient, in the same units. [N]
+    - `contacts`: those that exert forces, see rtg.Contacts.
     """
 
-    status: list[str]  # "converged", "acceptable", "pruned", "infeasible", ... [N]
-    iterations: Integers  # of the SQP [N]
-    starts: list[Floats]  # per solve [up to 8, bodies, 3]; empty without a solution
-    trajectory: Floats  # [N, h + 1, bodies, 3]
-    controls: Floats  # force x, force y, torque, before tanh [N, h, 3]
-    objective: Floats  # J of eq. (6) [N] in kg m²
-    infeasibility: Floats  # largest residual of the constraints [N] in the units of the core
-    stationarity: Floats  # largest entry of the Lagrangian's gradient [N], the same
+    status: list[str]
+    iterations: Integers
+    starts: list[Floats]
+    trajectory: Floats
+    controls: Floats
+    objective: Floats
+    infeasibility: Floats
+    stationarity: Floats
     contacts: Contacts
 
     @property
@@ -76,31 +94,18 @@ class ReverseSimulator:
         else:
             ends = own_data.in_task_units(self.task.core, end_poses, "end_poses")
         found = self._core.solve(ends, pushes, threads)
-        metre = self.task.core.metre
-        kilogram = self.task.core.kilogram
         objective, infeasibility, stationarity = found["figures"].T
-        contacts = found["contacts"]
         return ReverseSolutions(
             status=[_core.SOLVE_STATUSES[k] for k in found["status"]],
             iterations=found["iterations"],
             starts=[
                 starts[:count]
-                for starts, count in zip(
-                    self.task.outer(found["starts"]), found["found"], strict=True
-                )
+                for starts, count in zip(found["starts"], found["found"], strict=True)
             ],
-            trajectory=self.task.outer(found["trajectory"]),
+            trajectory=found["trajectory"],
             controls=found["controls"],
-            objective=objective / (kilogram * metre**2),
+            objective=objective,
             infeasibility=infeasibility,
             stationarity=stationarity,
-            contacts=Contacts(
-                solve=contacts["solve"],
-                sub_step=contacts["sub_step"],
-                body=contacts["body"],
-                other=contacts["other"],
-                point=contacts["point"] / metre,
-                normal=contacts["normal"],
-                force=contacts["force"] / (kilogram * metre),
-            ),
+            contacts=Contacts(**found["contacts"]),
         )

@@ -21,12 +21,18 @@ Floats = NDArray[np.float64]
 
 
 class GoalArea(NamedTuple):
-    """An area of the plane that a goal is about."""
+    """An area of the plane that a goal is about.
 
-    kind: str  # of the bodies; "*": of all objects
-    ring: Floats  # [vertices, 2] in m
-    target: bool  # the outline of a body where it is to lie
-    negated: bool  # to be avoided
+    - `kind`: of the bodies; "*": of all objects.
+    - `ring`: its outline. [vertices, 2] in m
+    - `target`: whether it is the outline of a body where that is to lie.
+    - `negated`: whether it is to be avoided.
+    """
+
+    kind: str
+    ring: Floats
+    target: bool
+    negated: bool
 
 
 class Task:
@@ -138,7 +144,8 @@ class Task:
     def inner(self, states: ArrayLike) -> Floats:
         """Returns states as the core takes them. [N, bodies, 3] -> [N, bodies, 3]
 
-        Raises ValueError for another shape and for numbers that are not finite.
+        Raises ValueError for another shape, for numbers that are not finite, and for fixed bodies
+        that are off their places.
         """
         return own_data.in_task_units(self.core, states)
 

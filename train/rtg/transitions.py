@@ -31,13 +31,19 @@ _AHEAD = 64  # batches that the search may be ahead of who takes them
 
 @dataclass(frozen=True)
 class Transitions:
-    """N pushes and where they lead."""
+    """N pushes and where they lead.
 
-    states: Floats  # [N, bodies, 3] x [m], y [m], θ [rad]
-    actions: NDArray[np.int64]  # [N]
-    next_states: Floats  # [N, bodies, 3]
-    success: NDArray[np.bool_]  # whether the goal holds afterwards [N]
-    source: NDArray[np.int8]  # index into SOURCES [N]
+    - `states`, `next_states`: before and after each push. [N, bodies, 3] x [m], y [m], θ [rad]
+    - `actions`: [N]
+    - `success`: whether the goal holds afterwards. [N]
+    - `source`: index into rtg.SOURCES. [N]
+    """
+
+    states: Floats
+    actions: NDArray[np.int64]
+    next_states: Floats
+    success: NDArray[np.bool_]
+    source: NDArray[np.int8]
 
     def __len__(self) -> int:
         return len(self.actions)

@@ -18,23 +18,33 @@ class Part:
     """A convex part of a body: all points within `radius` of a convex polygon.
 
     A disc is a polygon of one vertex, a plain polygon has the radius 0.
+
+    - `vertices`: counterclockwise, in the frame of the body. [n, 2] in m
+    - `radius`: in m.
     """
 
-    vertices: Floats  # counterclockwise, in the frame of the body [n, 2]
-    radius: float  # [m]
+    vertices: Floats
+    radius: float
 
 
 @dataclass(frozen=True)
 class Body:
-    """A rigid body, whose frame sits at its centre of mass."""
+    """A rigid body, whose frame sits at its centre of mass.
+
+    - `parts`: their union is the body; they may overlap.
+    - `mass`: in kg.
+    - `moment`: of inertia about the centre of mass, in kg m².
+    - `friction`: coefficient μ; a pair uses √(μ₁μ₂).
+    - `fixed`: whether it never moves.
+    """
 
     name: str
     kind: str
-    parts: list[Part]  # their union is the body; they may overlap
-    mass: float  # [kg]
-    moment: float  # of inertia about the centre of mass [kg m²]
-    friction: float  # coefficient μ; a pair uses √(μ₁μ₂)
-    fixed: bool  # never moves
+    parts: list[Part]
+    mass: float
+    moment: float
+    friction: float
+    fixed: bool
 
 
 @dataclass(frozen=True)
@@ -46,21 +56,49 @@ class Joint:
         revolute:   the points coincide,                     v = θ_child - θ_parent [rad];
         prismatic:  child's = parent's + v · axis,           θ_child = θ_parent + angle, v [m];
         fixed:      the points coincide,                     θ_child = θ_parent + angle.
+
+    - `type`: "revolute", "prismatic" or "fixed".
+    - `parent`, `child`: indices of the bodies.
+    - `on_parent`, `on_child`: the point of each, in its frame. [2] in m
+    - `axis`: unit vector in the frame of the parent. [2]
+    - `angle`: in rad.
+    - `lower`, `upper`: limits of the value in m or rad; infinite if there are none.
     """
 
-    type: str  # "revolute", "prismatic" or "fixed"
-    parent: int  # index of the body
+    type: str
+    parent: int
     child: int
-    on_parent: Floats  # the point, in the frame of the parent [2]
-    on_child: Floats  # the point, in the frame of the child [2]
-    axis: Floats  # unit vector, in the frame of the parent [2]
-    angle: float  # [rad]
-    lower: float  # limits of the value; infinite if there are none
+    on_parent: Floats
+    on_child: Floats
+    axis: Floats
+    angle: float
+    lower: float
     upper: float
 
 
 class Scene:
-    """The scene of a task. Body 0 is the robot."""
+    """The scene of a task. Body 0 is the robot.
+
+    - `bodies`, `joints`: those of the task.
+    - `damping`: rate at which friction with the table takes velocity away, of translation as of
+      turning, in 1/s.
+    - `push_s`: time of a push, in s.
+    - `stride`: the longest push, in m.
+    - `force_factor`: largest force of the robot by its own drag.
+    - `torque_factor`: largest torque of the robot by its drag times its radius.
+    - `size`: radius of the robot, or `task.scale`, in m.
+    - `start`: has the places of fixed bodies. [bodies, 3] in m and rad
+    """
+
+    bodies: list[Body]
+    joints: list[Joint]
+    damping: float
+    push_s: float
+    stride: float
+    force_factor: float
+    torque_factor: float
+    size: float
+    start: Floats
 
     def __init__(self, config: _core.Config) -> None:
         self._task = task = config.task
@@ -86,17 +124,14 @@ class Scene:
                 Joint(j.type, j.parent, j.child, *ends, j.lower / unit, j.upper / unit)
             )
         physics = config.physics
-        # Rate at which friction with the table takes velocity away, by translation and turning.
-        self.damping: float = physics.damping / physics.time_step  # [1/s]
-        self.push_s: float = physics.sub_steps * physics.time_step  # time of a push [s]
+        self.damping = physics.damping / physics.time_step
+        self.push_s = physics.sub_steps * physics.time_step
         ways = task.ways(np.arange(task.actions))
-        self.stride: float = float(np.linalg.norm(ways, axis=1).max()) / m  # longest push [m]
-        self.force_factor: float = physics.force_factor  # largest force of the robot / own drag
-        self.torque_factor: float = (
-            physics.torque_factor
-        )  # the same of its torque / (drag · radius)
-        self.size: float = 0.8 / m  # radius of the robot, or task.scale [m]
-        self.start: Floats = task.start / [m, m, 1.0]  # has the places of fixed bodies [bodies, 3]
+        self.stride = float(np.linalg.norm(ways, axis=1).max()) / m
+        self.force_factor = physics.force_factor
+        self.torque_factor = physics.torque_factor
+        self.size = 0.8 / m
+        self.start = task.start / [m, m, 1.0]
 
     def is_free(self, states: Floats, ways: Floats) -> Bools:
         """Returns where the robot meets no body on its way. [N, bodies, 3], [N, 2] -> [N]

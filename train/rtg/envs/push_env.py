@@ -68,8 +68,9 @@ def checked_state(task: _core.Task, poses: Any) -> Floats:
         raise ValueError(f"poses of shape {list(state.shape)}; legal: {list(task.start.shape)}")
     if not task.is_legal(state[None])[0]:
         raise ValueError(
-            "poses are no state of the task; legal: finite numbers, no bodies that overlap, none "
-            "out of twice the arena, fixed bodies in their places"
+            "poses are no state of the task; legal: finite numbers in the unit of the task, which "
+            "rtg.Task.inner() makes of metres; no bodies that overlap, none out of twice the "
+            "arena, fixed bodies in their places"
         )
     return state
 
@@ -158,7 +159,7 @@ class PushEnv(gymnasium.Env[Any, Any]):
 
         `options`: "poses", the start [bodies, 3]; "jitter", which replaces self.jitter; with
         drawn goals "goal", the state whose layout is to be reached [bodies, 3]. All are in units of
-        the task.
+        the task, in which the robot has a radius of 0.8: rtg.Task.inner() makes them of metres.
         """
         super().reset(seed=seed)
         options = options or {}
