@@ -23,7 +23,8 @@ class TransitionPublisher {
   void store(std::span<const search::Transition> rows);
   void seal();
 
-  /// Sends the rows that are due. Sends the length of the stream (RTG_TAIL) five times a second.
+  /// Sends the rows that are due. Sends the length of the stream (RTG_TAIL) five times a second,
+  /// and at once when it is sealed.
   void tick(bus::Seconds now);
 
   /// Returns whether tick() will send more rows later without new events.
@@ -46,7 +47,9 @@ class TransitionPublisher {
 
   bus::Bus& bus_;
   std::int64_t stream_;
-  bus::Ticker tail_{0.2};
+  static constexpr bus::Seconds kTailInterval = 0.2;
+
+  bus::Ticker tail_{kTailInterval};
   mutable std::mutex mutex_;  // guards the members below
   stream::StreamServer server_;
 };

@@ -13,7 +13,7 @@ from graph import Graph, generated_in_process, lost
 from network import Network
 from processes import freeze
 
-SETTINGS = ("search.transitions=12000", "run.seed=3")
+SETTINGS = ("search.transitions=30000", "train.buffer=30000", "run.seed=3")  # about 4 s
 WORKERS = ("worker 0", "worker 1")
 COORDINATOR, CONSUMER = "coordinator", "consumer"
 PROGRAMS = ("server", *WORKERS, COORDINATOR)  # those that may be killed: they keep no rows

@@ -34,7 +34,8 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     not. It then raises TypeError for a value of another kind, ValueError for a whole number that is
     negative or too large.
     """
-    signature = inspect.signature(function)
+    parameters = inspect.signature(function).parameters.values()
+    names = [one.name for one in parameters if one.kind is not one.VAR_POSITIONAL]
 
     @functools.cache
     def kinds() -> Mapping[str, list[_Kind]]:
@@ -44,7 +45,7 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
 
     @functools.wraps(function)
     def call(*args: P.args, **kwargs: P.kwargs) -> R:
-        given = signature.bind_partial(*args, **kwargs).arguments
+        given = {**dict(zip(names, args, strict=False)), **kwargs}
         for name in given.keys() & kinds().keys():
             _check(name, given[name], kinds()[name])
         return function(*args, **kwargs)

@@ -50,7 +50,9 @@ def in_task_units(task: _core.Task, states: ArrayLike, name: str = "states") -> 
 def _put_in_place(task: _core.Task, inner: Floats, name: str) -> None:
     """Takes from fixed bodies what rounding has moved them."""
     fixed = np.flatnonzero(task.fixed)
-    off = np.abs(inner[:, fixed] - task.start[fixed]).max(axis=2, initial=0.0) > _OFF
+    if not fixed.size:
+        return
+    off = np.abs(inner[:, fixed] - task.start[fixed]).max(axis=2) > _OFF
     if off.any():
         row, at = np.argwhere(off)[0]
         body = fixed[at]
