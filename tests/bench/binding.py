@@ -2,7 +2,8 @@
 
     binding.py BUILD_FOLDER [--smoke]
 
-A call solves all actions from one goal state, on one core. Prints thread-CPU times per task,
+A call solves all actions from one goal state, on one core; reverse_call does so in C++ and
+reverse_call.py in Python, each in a process of its own. Prints thread-CPU times per task,
 medians over the states of the shortest of interleaved repetitions, and a gate for each:
 `binding.TASK`, the time from Python by that in C++. Both return whole solutions, Python as arrays
 in metres. --smoke repeats little and leaves out the gates. Exit status 1 if a gate failed.
@@ -14,34 +15,22 @@ import argparse
 import statistics
 import subprocess
 import sys
-import time
 from collections.abc import Sequence
 from pathlib import Path
 
-import rtg
 from gates import gate
 from rtg import paths
 
+HERE = Path(__file__).resolve().parent
 TASKS = ("gathering", "push_t", "drawer")
 STATES = 6
 
 
-def in_cpp(build: Path, name: str) -> list[float]:
+def times_of(call: Sequence[str | Path], task: str) -> list[float]:
     """Returns the CPU time of the call for each state [ms]."""
-    command = [str(build / "tests" / "reverse_call"), str(paths.CONFIG / f"{name}.yaml")]
-    done = subprocess.run([*command, str(STATES)], capture_output=True, check=True, text=True)
+    command = [*call, paths.CONFIG / f"{task}.yaml", str(STATES)]
+    done = subprocess.run(command, capture_output=True, check=True, text=True)
     return [float(line) for line in done.stdout.split()]
-
-
-def in_python(simulator: rtg.ReverseSimulator) -> list[float]:
-    """Returns the CPU time of the call for each state [ms]."""
-    task, times = simulator.task, []
-    for seed in range(1, STATES + 1):
-        state = task.goal_state(seed)
-        begin = time.thread_time()
-        simulator.solve(state, range(task.actions))
-        times.append(1e3 * (time.thread_time() - begin))
-    return times
 
 
 def main(words: Sequence[str]) -> int:
@@ -50,11 +39,9 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument("--smoke", action="store_true")
     args = parser.parse_args(words)
     held = True
+    calls = ([sys.executable, HERE / "reverse_call.py"], [args.build / "tests" / "reverse_call"])
     for name in TASKS:
-        simulator = rtg.ReverseSimulator(rtg.load_task(name))
-        rounds = [
-            (in_python(simulator), in_cpp(args.build, name)) for _ in range(1 if args.smoke else 9)
-        ]
+        rounds = [[times_of(call, name) for call in calls] for _ in range(1 if args.smoke else 9)]
         python, cpp = (
             statistics.median(min(times) for times in zip(*side, strict=True))
             for side in zip(*rounds, strict=True)

@@ -7,6 +7,10 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "core/forward/free_path.hpp"
 #include "core/search/predecessor.hpp"
@@ -74,6 +78,44 @@ nb::ndarray<nb::numpy, bool> successes(const tasks::Task& task, const StateArray
   for (std::size_t row = 0; row < states.shape(0); ++row)
     out.data[row] = succeeded(task, state_at(states, row));
   return out.release({states.shape(0)});
+}
+
+std::string in_words(const Pose& pose, double metre) {
+  std::ostringstream words;
+  words << '(' << pose.x / metre << " m, " << pose.y / metre << " m, " << pose.theta << " rad)";
+  return words.str();
+}
+
+/// Returns states in metres as the core takes them. `name`: that of the argument, for ValueError.
+nb::ndarray<nb::numpy, double> from_metres(const tasks::Task& task, const StateArray& states,
+                                           const std::string& name) {
+  constexpr double kOff = 1e-6;  // of the place of a fixed body, that rounding explains [m, rad]
+  const double metre = 1.0 / task.units.length;
+  const std::size_t bodies = task.scene.size();
+  check_bodies(states, bodies);
+  OwnedArray<double> out(states.shape(0) * bodies * 3);
+  for (std::size_t row = 0; row < states.shape(0); ++row) {
+    Poses poses = state_at(states, row);
+    if (!is_finite(poses))
+      throw nb::value_error(
+          (name + " hold numbers that are not finite; legal: finite ones").c_str());
+    for (std::size_t i = 0; i < bodies; ++i) {
+      Pose &pose = poses[i], place = task.start[i];
+      pose = {metre * pose.x, metre * pose.y, pose.theta};
+      if (!task.scene.bodies[i].fixed) continue;
+      if (std::max({std::abs(pose.x - place.x), std::abs(pose.y - place.y),
+                    std::abs(pose.theta - place.theta)}) > kOff)
+        throw nb::value_error(
+            (name + ": row " + std::to_string(row) + " has the fixed " + task.scene.bodies[i].name +
+             " at " + in_words(pose, metre) + "; legal: its place, " + in_words(place, metre) +
+             ". States are in metres, those of files of runs and of environments in the unit of "
+             "the task: rtg.Task.outer() makes metres of them")
+                .c_str());
+      pose = place;
+    }
+    write_state(poses, out.data.get() + row * bodies * 3);
+  }
+  return out.release({states.shape(0), bodies, 3});
 }
 
 /// Returns which states an episode can be in: finite, all movable bodies within twice the arena,
@@ -303,7 +345,17 @@ single state, [1, bodies, 3].)")
 Those with `target` lie at the ends of a range. `states`: a single state, [1, bodies, 3].)")
       .def_prop_ro(
           "arena", [](const tasks::Task& task) { return task.push.arena; },
-          "Half width of the square that the robot stays in [m].")
+          "Half width of the square that the robot stays in [m].");
+}
+
+/// Metres and kilograms.
+void bind_units(nb::class_<tasks::Task>& bound) {
+  bound
+      .def("from_metres", &from_metres, nb::arg("states"), nb::arg("name") = "states",
+           R"(Returns states in metres in the unit of the poses. [N, bodies, 3] -> [N, bodies, 3]
+
+Fixed bodies come to lie in their places to the bit. `name`: that of the argument. Raises
+ValueError for numbers that are not finite, and for fixed bodies off their places.)")
       .def_prop_ro(
           "kilogram",
           [](const tasks::Task& task) {
@@ -423,6 +475,7 @@ void bind_task(nb::module_& module) {
 The reward is 1 when the goal holds, else 0. Success ends the episode.)");
   bind_fields(bound);
   bind_geometry(bound);
+  bind_units(bound);
   bind_interface(bound);
   bind_states(bound);
 }

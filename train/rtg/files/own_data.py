@@ -23,8 +23,6 @@ Floats = NDArray[np.float64]
 
 _NEEDED = ("states", "actions", "next_states")
 
-_OFF = 1e-6  # of the place of a fixed body, that rounding explains [task units, rad]
-
 
 class OwnData(NamedTuple):
     """Transitions that no search of the run has found."""
@@ -39,36 +37,7 @@ def in_task_units(task: _core.Task, states: ArrayLike, name: str = "states") -> 
     `name`: that of the argument. Raises ValueError for another shape, for numbers that are not
     finite, and for fixed bodies off their places, as they are in poses that are not in metres.
     """
-    given = arguments.numbers(name, states, (None, task.bodies, 3))
-    if not np.isfinite(given).all():
-        raise ValueError(f"{name} hold numbers that are not finite; legal: finite ones")
-    inner = np.ascontiguousarray(given * [task.metre, task.metre, 1.0])
-    _put_in_place(task, inner, name)
-    return inner
-
-
-def _put_in_place(task: _core.Task, inner: Floats, name: str) -> None:
-    """Takes from fixed bodies what rounding has moved them."""
-    fixed = np.flatnonzero(task.fixed)
-    if not fixed.size:
-        return
-    off = np.abs(inner[:, fixed] - task.start[fixed]).max(axis=2) > _OFF
-    if off.any():
-        row, at = np.argwhere(off)[0]
-        body = fixed[at]
-        found, legal = (
-            place[body] / [task.metre, task.metre, 1.0] for place in (inner[row], task.start)
-        )
-        raise ValueError(
-            f"{name}: row {row} has the fixed {task.names[body]} at {_words(found)}; legal: its "
-            f"place, {_words(legal)}. States are in metres, those of files of runs and of "
-            "environments in the unit of the task: rtg.Task.outer() makes metres of them"
-        )
-    inner[:, fixed] = task.start[fixed]
-
-
-def _words(pose: Floats) -> str:
-    return f"({pose[0]:.6g} m, {pose[1]:.6g} m, {pose[2]:.6g} rad)"
+    return task.from_metres(arguments.numbers(name, states, (None, task.bodies, 3)), name)
 
 
 def checked_rows(
