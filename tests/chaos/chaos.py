@@ -79,18 +79,21 @@ class Chaos:
 
     def losses(self) -> None:
         """Datagrams that get lost; of the last kind 5 % come twice as well."""
-        rounds = 1 if self._smoke else 5
-        base = [disturbed() for _ in range(rounds)]
-        for percent, twice, bar in ((1, 0, 1.1), (5, 0, 1.5), (20, 5, 4.0)):
+        bars = {1: 1.1, 5: 1.5, 20: 4.0}  # of the time, by the percentage that is lost
+        ends: dict[int, list[generation.End]] = {percent: [] for percent in (0, *bars)}
+        for _ in range(1 if self._smoke else 9):
+            for percent in ends:
 
-            def lose(net: network.Network, percent: int = percent, twice: int = twice) -> None:
-                net.lose(percent)
-                if twice:
-                    net.double(twice)
+                def lose(net: network.Network, percent: int = percent) -> None:
+                    if percent:
+                        net.lose(percent)
+                    if percent == 20:
+                        net.double(5)
 
-            ends = [disturbed(before=lose) for _ in range(rounds)]
-            self.report.same(f"loss_{percent}", ends, self._rows)
-            self.report.most(f"loss_{percent}.time", _median(ends) / _median(base), bar)
+                ends[percent].append(disturbed(before=lose))
+        for percent, bar in bars.items():
+            self.report.same(f"loss_{percent}", ends[percent], self._rows)
+            self.report.most(f"loss_{percent}.time", _median(ends[percent]) / _median(ends[0]), bar)
 
     def kills(self) -> None:
         """Kills of workers and server, about one in a second."""

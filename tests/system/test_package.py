@@ -1,6 +1,7 @@
 """RTG as others install it: a wheel in an environment of its own, and the C++ libraries."""
 
 import os
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -38,11 +39,13 @@ for name in names:
 """
 
 
+OF_THE_SYSTEM = {"libc", "libm", "libgcc_s", "libstdc++", "libpthread", "libglib-2", "libpcre2-8"}
 TOOLS = f"{Path(sys.executable).parent}:{os.environ['PATH']}"  # CMake and Ninja among them
 # One process compiles: other tests run beside. By these names of the compilers ccache has what the
 # release build has compiled.
 COMPILERS = {"CC": "/usr/bin/cc", "CXX": "/usr/bin/c++"}
 BUILDING = {**os.environ, **COMPILERS, "PATH": TOOLS, "CMAKE_BUILD_PARALLEL_LEVEL": "1"}
+REPAIR = (sys.executable, "-m", "auditwheel", "repair", "--exclude", "liblcm.so.1")
 BUILD_PATIENCE = 3000.0  # [s]
 
 
@@ -54,12 +57,15 @@ def run(command: Sequence[str | Path], **options: object) -> str:
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A virtual environment with nothing but the wheel and what it depends on."""
+    """A virtual environment with nothing but the wheel, for any machine, and what it depends on."""
     folder = tmp_path_factory.mktemp("package")
     build = [sys.executable, "-m", "pip", "wheel", paths.ROOT, "--wheel-dir", folder / "wheels"]
     below = f"build-dir={paths.ROOT / 'build' / 'wheel'}"
     run([*build, "--no-deps", "--no-build-isolation", "--config-settings", below])
-    (wheel,) = (folder / "wheels").iterdir()
+    (here,) = (folder / "wheels").iterdir()
+    run([*REPAIR, here, "--wheel-dir", folder / "repaired"])
+    (wheel,) = (folder / "repaired").iterdir()
+    assert "manylinux" in wheel.name
     run([sys.executable, "-m", "venv", folder / "environment"])
     pinned = paths.ROOT / "train" / "requirements.txt"
     python = folder / "environment" / "bin" / "python"
@@ -77,6 +83,17 @@ def test_the_parts_work_from_a_wheel_in_any_folder(installed: Path, tmp_path: Pa
     assert str(installed.parents[1]) in said
     checked = run([installed.parent / "rtg", "check", "drawer"], **elsewhere(tmp_path))
     assert f"{installed.parents[1]}/lib" in checked and "drawer.yaml: legal" in checked
+
+
+def test_a_wheel_brings_the_libraries_of_debian(installed: Path) -> None:
+    (package,) = installed.parents[1].glob("lib/python*/site-packages/rtg")
+    for file in [*package.glob("_core.*.so"), *(package / "programs").glob("rtg_*")]:
+        found = dict(re.findall(r"(\S+) => (\S+)", run(["ldd", file])))
+        assert "not" not in found.values()  # as in "=> not found"
+        theirs = {
+            name for name, path in found.items() if not path.startswith(str(installed.parents[1]))
+        }
+        assert {name.split(".")[0] for name in theirs} <= OF_THE_SYSTEM, (file, theirs)
 
 
 def test_the_examples_run_from_a_wheel(installed: Path, tmp_path: Path) -> None:
