@@ -36,7 +36,9 @@ def test_states_are_in_metres() -> None:
 def test_poses_of_a_run_are_not_taken_for_metres_where_a_body_is_fixed() -> None:
     task = rtg.load_task("drawer")
     in_metres, in_units = task.start()[None], task.core.start[None]
-    wrong = r"row 0 has the fixed cabinet at \(0 m, 9.168 m, .*; legal: its place, \(0 m, 5.73 m, "
+    wrong = (
+        r"row 0 has the fixed body 'cabinet' at \(0 m, 9.168 m, .* of \(0 m, 5.73 m, .*; legal: m"
+    )
     rows = rtg.forward.Box2D(task).push(in_metres, [0])[0]
     np.testing.assert_array_equal(task.inner(rows)[0, 3], task.core.start[3])  # to the bit
     for take in (

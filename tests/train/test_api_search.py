@@ -9,7 +9,8 @@ def touching(task: rtg.Task) -> tuple[np.ndarray, np.ndarray]:
     """Two states of a sub-step in which bodies are near each other, and move a little."""
     now = task.goal_state(2)
     after = now.copy()
-    after[:, :2] += 0.002 * np.random.default_rng(1).standard_normal((len(now), 2))
+    movable = ~np.array(task.core.fixed)
+    after[movable, :2] += 0.002 * np.random.default_rng(1).standard_normal((movable.sum(), 2))
     return now, after
 
 

@@ -7,8 +7,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -25,6 +23,7 @@
 #include "train/bindings/arrays.hpp"
 #include "train/bindings/bindings.hpp"
 #include "train/bindings/fields.hpp"
+#include "train/bindings/state_defect.hpp"
 #include "train/bindings/vertices.hpp"
 
 namespace rtg::bindings {
@@ -80,16 +79,13 @@ nb::ndarray<nb::numpy, bool> successes(const tasks::Task& task, const StateArray
   return out.release({states.shape(0)});
 }
 
-std::string in_words(const Pose& pose, double metre) {
-  std::ostringstream words;
-  words << '(' << pose.x / metre << " m, " << pose.y / metre << " m, " << pose.theta << " rad)";
-  return words.str();
+std::string defect_of(const tasks::Task& task, const StateArray& state) {
+  return state_defect(task, only_state(state, task.scene.size()));
 }
 
 /// Returns states in metres as the core takes them. `name`: that of the argument, for ValueError.
 nb::ndarray<nb::numpy, double> from_metres(const tasks::Task& task, const StateArray& states,
                                            const std::string& name) {
-  constexpr double kOff = 1e-6;  // of the place of a fixed body, that rounding explains [m, rad]
   const double metre = 1.0 / task.units.length;
   const std::size_t bodies = task.scene.size();
   check_bodies(states, bodies);
@@ -99,41 +95,25 @@ nb::ndarray<nb::numpy, double> from_metres(const tasks::Task& task, const StateA
     if (!is_finite(poses))
       throw nb::value_error(
           (name + " hold numbers that are not finite; legal: finite ones").c_str());
-    for (std::size_t i = 0; i < bodies; ++i) {
-      Pose &pose = poses[i], place = task.start[i];
-      pose = {metre * pose.x, metre * pose.y, pose.theta};
-      if (!task.scene.bodies[i].fixed) continue;
-      if (std::max({std::abs(pose.x - place.x), std::abs(pose.y - place.y),
-                    std::abs(pose.theta - place.theta)}) > kOff)
-        throw nb::value_error(
-            (name + ": row " + std::to_string(row) + " has the fixed " + task.scene.bodies[i].name +
-             " at " + in_words(pose, metre) + "; legal: its place, " + in_words(place, metre) +
-             ". States are in metres, those of files of runs and of environments in the unit of "
-             "the task: rtg.Task.outer() makes metres of them")
-                .c_str());
-      pose = place;
-    }
+    for (Pose& pose : poses) pose = {metre * pose.x, metre * pose.y, pose.theta};
+    if (const std::string defect = place_defect(task, poses); !defect.empty())
+      throw nb::value_error(
+          (name + ": row " + std::to_string(row) + " has " + defect +
+           "; legal: metres. Files of runs and environments have the unit of the task, of which "
+           "rtg.Task.outer() makes metres")
+              .c_str());
+    for (std::size_t i = 0; i < bodies; ++i)
+      if (task.scene.bodies[i].fixed) poses[i] = task.start[i];
     write_state(poses, out.data.get() + row * bodies * 3);
   }
   return out.release({states.shape(0), bodies, 3});
 }
 
-/// Returns which states an episode can be in: finite, all movable bodies within twice the arena,
-/// and no bodies that overlap by more than kDeep.
 nb::ndarray<nb::numpy, bool> legal_states(const tasks::Task& task, const StateArray& states) {
-  constexpr double kDeep = 0.03;  // beyond what simulators let bodies overlap [m]
   check_bodies(states, task.scene.size());
-  PushConfig around = task.push;
-  around.arena *= 2.0;
   OwnedArray<bool> out(states.shape(0));
-  for (std::size_t row = 0; row < states.shape(0); ++row) {
-    const Poses poses = state_at(states, row);
-    bool legal = is_finite(poses);
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      legal = legal &&
-              (task.scene.bodies[i].fixed ? poses[i] == task.start[i] : in_arena(poses[i], around));
-    out.data[row] = legal && !first_overlap(task.scene, poses, -kDeep);
-  }
+  for (std::size_t row = 0; row < states.shape(0); ++row)
+    out.data[row] = state_defect(task, state_at(states, row)).empty();
   return out.release({states.shape(0)});
 }
 
@@ -355,7 +335,8 @@ void bind_units(nb::class_<tasks::Task>& bound) {
            R"(Returns states in metres in the unit of the poses. [N, bodies, 3] -> [N, bodies, 3]
 
 Fixed bodies come to lie in their places to the bit. `name`: that of the argument. Raises
-ValueError for numbers that are not finite, and for fixed bodies off their places.)")
+ValueError for numbers that are not finite, for fixed bodies off their places, and for others
+out of twice the arena.)")
       .def_prop_ro(
           "kilogram",
           [](const tasks::Task& task) {
@@ -435,6 +416,10 @@ It is sample `index` of random stream `seed`. Returns None if 1,000 attempts fai
 
 They are finite, no bodies overlap by more than 0.03 m, movable ones are within twice the
 arena, and fixed ones in their places.)")
+      .def("defect", &defect_of, nb::arg("states"),
+           R"(Returns why no episode can be in a state, in words; empty if is_legal().
+
+`states`: a single state, [1, bodies, 3].)")
       .def("moved", &moved, nb::arg("states"), nb::arg("next_states"),
            R"(Returns which bodies are more than 0.05 units from where they were. [N, bodies]
 

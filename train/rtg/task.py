@@ -144,8 +144,8 @@ class Task:
     def inner(self, states: ArrayLike) -> Floats:
         """Returns states as the core takes them. [N, bodies, 3] -> [N, bodies, 3]
 
-        Raises ValueError for another shape, for numbers that are not finite, and for fixed bodies
-        that are off their places.
+        Raises ValueError for another shape, for numbers that are not finite, for fixed bodies off
+        their places, and for others out of twice the arena.
         """
         return own_data.in_task_units(self.core, states)
 

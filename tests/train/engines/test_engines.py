@@ -126,6 +126,22 @@ def test_a_failure_has_the_users_traceback_and_the_state() -> None:
     assert "rtg/engines" not in str(caught.value)
 
 
+def test_fixed_bodies_that_move_are_an_error() -> None:
+    task = of("Wind", "drawer")
+    words = r"returned with True fixed bodies that have moved, for the state \[\["
+    with pytest.raises(EngineError, match=words):
+        rtg.forward.Forward(task).push(task.start()[None], [0])
+
+
+def test_a_push_after_which_bodies_overlap_is_none() -> None:
+    task = of("Ghost")
+    beside = task.start()
+    beside[0, :2] = beside[1, :2] - [2.5, 0.0]  # the push of 2 m ends within the body
+    after, ok = rtg.forward.Forward(task).push(beside[None], [0])
+    assert not ok[0]
+    np.testing.assert_array_equal(after[0], task.outer(task.inner(beside[None]))[0])
+
+
 @pytest.mark.parametrize(
     ("engine", "words"),
     [

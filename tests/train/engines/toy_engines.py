@@ -64,6 +64,13 @@ class Lost(Ghost):
         return np.where(np.arange(states.shape[1])[:, None] == 0, np.nan, ends), ok
 
 
+class Wind(Ghost):
+    """Blows at walls, too."""
+
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return states + 0.01, np.ones(len(states), bool)
+
+
 class Helpless(Ghost):
     """Cannot simulate any push."""
 

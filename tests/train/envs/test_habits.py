@@ -131,10 +131,13 @@ START = PushEnv().task.start
 @pytest.mark.parametrize(
     ("poses", "message"),
     [
-        (np.full_like(START, np.nan), "no state of the task; legal: finite"),
-        (np.zeros_like(START), "no bodies that overlap"),
+        (
+            np.full_like(START, np.nan),
+            "no state of the task: numbers that are not finite; legal",
+        ),
+        (np.zeros_like(START), "'robot' and 'box1' overlap by more than 0.03 m; legal"),
         (START[None], r"poses of shape \[1, 4, 3\]"),
-        (np.add(START, [40.0, 0.0, 0.0]), "none out of twice the arena"),
+        (np.add(START, [40.0, 0.0, 0.0]), r"'robot' at \(40 m, .*, out of twice the arena; legal"),
         (START[:2], r"poses of shape \[2, 3\]; legal: \[4, 3\]"),
     ],
 )

@@ -19,6 +19,8 @@ from rtg.engines.scene import Bools, Floats, Scene
 from rtg.errors import RunError, UserError
 
 Integers = NDArray[np.int64]
+_STILL = 1e-5  # by which fixed bodies may differ [m, rad], the robot having a radius of 0.8
+
 _OURS = {"mujoco": "rtg.engines.mujoco:MuJoCo"}
 ENGINES = ("box2d", "newton", *_OURS)  # which need no class of the user's
 
@@ -68,7 +70,7 @@ class _Outer:
     """An Engine as a Simulator.
 
     Robots end in the arena, states have single precision, and pushes that could not be simulated
-    leave them as they are.
+    leave them as they are. So do those after which bodies overlap or are out of twice the arena.
     """
 
     def __init__(self, config: _core.Config) -> None:
@@ -99,8 +101,8 @@ class _Outer:
         robot = states[:, 0, :2]
         inside = np.clip(robot + ways, -arena, arena) - robot
         ends, ok = self._checked(states / metre, inside / self._task.metre)
-        after = np.float32(ends * metre).astype(np.float64)
-        ok = ok & np.isfinite(after).all((1, 2))  # in single precision
+        after = (ends * metre).astype(np.float32).astype(np.float64)
+        ok = ok & self._task.is_legal(after)
         return np.where(ok[:, None, None], after, states), ok
 
     def _checked(self, states: Floats, ways: Floats) -> tuple[Floats, Bools]:
@@ -115,7 +117,7 @@ class _Outer:
             where = f"in the state {state.tolist()} with the way {way.tolist()}"
             self._guarded(partial(self._engine.push, state[None].copy(), way[None].copy()), where)
         where = f"in a batch of {len(states)} states, but in none of them alone"
-        raise self._failure(failure, where) from failure
+        raise self._failure(failure, where) from None  # its text has the traceback
 
     def _answer(self, answer: Any, states: Floats) -> tuple[Floats, Bools]:
         """Returns what the engine has returned for `states`, if it has the right shapes."""
@@ -129,6 +131,13 @@ class _Outer:
             if (wrong := ok & ~np.isfinite(ends).all((1, 2))).any():
                 where = states[wrong][0].tolist()
                 raise ValueError(f"with True numbers that are not finite for the state {where}")
+            fixed = self._task.fixed
+            moved = (
+                np.abs(ends - states)[:, fixed].max((1, 2), initial=0.0) > _STILL / self._task.metre
+            )
+            if (wrong := ok & moved).any():
+                where = states[wrong][0].tolist()
+                raise ValueError(f"with True fixed bodies that have moved, for the state {where}")
             return ends, ok
         except (TypeError, ValueError) as error:
             raise EngineError(
@@ -142,7 +151,7 @@ class _Outer:
         except (UserError, RunError):
             raise
         except Exception as error:
-            raise self._failure(error, when) from error
+            raise self._failure(error, when) from None
 
     def _failure(self, error: Exception, when: str) -> EngineError:
         return EngineError(f"{self._prefix()} failed:\n{_lines(error)}\n{when}")

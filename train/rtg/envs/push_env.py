@@ -66,11 +66,11 @@ def checked_state(task: _core.Task, poses: Any) -> Floats:
     state = np.array(poses, np.float64)
     if state.shape != task.start.shape:
         raise ValueError(f"poses of shape {list(state.shape)}; legal: {list(task.start.shape)}")
-    if not task.is_legal(state[None])[0]:
+    if defect := task.defect(state[None]):
         raise ValueError(
-            "poses are no state of the task; legal: finite numbers in the unit of the task, which "
-            "rtg.Task.inner() makes of metres; no bodies that overlap, none out of twice the "
-            "arena, fixed bodies in their places"
+            f"poses are no state of the task: {defect}; legal: finite numbers in the unit of the "
+            "task, which rtg.Task.inner() makes of metres; no bodies that overlap, none out of "
+            "twice the arena, fixed bodies in their places"
         )
     return state
 

@@ -35,7 +35,8 @@ def in_task_units(task: _core.Task, states: ArrayLike, name: str = "states") -> 
     """Returns states in metres as the core takes them. [N, bodies, 3] -> [N, bodies, 3]
 
     `name`: that of the argument. Raises ValueError for another shape, for numbers that are not
-    finite, and for fixed bodies off their places, as they are in poses that are not in metres.
+    finite, for fixed bodies off their places, and for others out of twice the arena, where they
+    may be in poses that are not in metres.
     """
     return task.from_metres(arguments.numbers(name, states, (None, task.bodies, 3)), name)
 
@@ -56,9 +57,11 @@ def checked_rows(
         raise ValueError("no transitions; legal: at least one")
     for name, states in (("states", poses), ("next_states", next_poses)):
         if not (legal := task.is_legal(states)).all():
+            row = int(np.flatnonzero(~legal)[0])
             raise ValueError(
-                f"{name}: row {int(np.flatnonzero(~legal)[0])} is no state of the task; legal: no "
-                "bodies that overlap, none out of twice the arena, fixed bodies in their places"
+                f"{name}: row {row} is no state of the task: {task.defect(states[row : row + 1])}; "
+                "legal: no bodies that overlap, none out of twice the arena, fixed bodies in their "
+                "places"
             )
     success = task.succeeded(next_poses)
     return Rows(
