@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/world/pace.hpp"
 #include "core/world/separation.hpp"
 
 namespace rtg::config {
@@ -125,6 +126,14 @@ std::string bodies_in_words(const tasks::Task& task) {
   return out;
 }
 
+std::string heavy_in_words(const Config& config) {
+  std::string out;
+  for (const std::string& words : heavy_bodies(config))
+    out += "  a push moves " + words +
+           ": its mass is large for a robot of this density (task.bodies.0.density)\n";
+  return out;
+}
+
 std::string joint_line(const Joint& joint, const tasks::Task& task) {
   const auto name = [&task](int body) {
     return task.scene.bodies[static_cast<std::size_t>(body)].name;
@@ -227,8 +236,8 @@ bool some_start_in_places(const tasks::Task& task) {
 std::string task_in_words(const Config& config) {
   const tasks::Task& task = config.task;
   const double metre = task.units.length;
-  std::string out =
-      "task " + task.name + "\n" + bodies_in_words(task) + joints_in_words(task) + "goal, all of\n";
+  std::string out = "task " + task.name + "\n" + bodies_in_words(task) + heavy_in_words(config) +
+                    joints_in_words(task) + "goal, all of\n";
   for (const tasks::GoalTerm& term : task.goal) out += term_in_words(term, metre);
   const PushConfig& push = task.push;
   std::string strides;
@@ -286,6 +295,17 @@ std::string work_in_words(const Config& config) {
 }
 
 }  // namespace
+
+std::vector<std::string> heavy_bodies(const Config& config) {
+  const Scene& scene = config.task.scene;
+  const std::vector<double> shares = paces(scene, config.physics);
+  std::vector<std::string> out;
+  for (std::size_t i = 1; i < shares.size(); ++i)
+    if (shares[i] < 0.5)
+      out.push_back(
+          print("'%s' by %.2g of a stride at most", scene.bodies[i].name.c_str(), shares[i]));
+  return out;
+}
 
 std::string description(const Config& config) {
   return task_in_words(config) + work_in_words(config);

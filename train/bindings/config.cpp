@@ -79,6 +79,8 @@ Error messages use `name` as the name of the file. Paths in the text are relativ
           "Largest displacement of objects in x and y at the start of an evaluation episode [m].")
       .def_prop_ro("training_jitter", &config::Config::training_jitter,
                    "The same for episodes of training [m].")
+      .def_prop_ro("heavy_bodies", &config::heavy_bodies,
+                   "In words, the loose bodies that the robot pushes by less than half a stride.")
       .def_prop_ro("description", &config::description, "The configuration in human-readable text.")
       .def_prop_ro("yaml", &config::canonical_yaml,
                    "The canonical YAML text; loading it gives an equal configuration.")

@@ -430,13 +430,6 @@ The robot has a radius of 0.8 units. Turns do not count. `states`, `next_states`
 They are in the unit of the poses, of which `metre` make a metre.
 
 Raises ValueError for an action that the task does not have.)")
-      .def("__reduce__",
-           [](const tasks::Task& task) {
-             config::Config config;
-             config.task = task;
-             return nb::make_tuple(nb::module_::import_("rtg.pickling").attr("task_of"),
-                                   nb::make_tuple(canonical_yaml(config)));
-           })
       .def("in_start_region", &in_start_regions, nb::arg("states"),
            R"(Returns whether all objects are in place of a start. [N, bodies, 3] -> [N]
 
@@ -463,6 +456,12 @@ The reward is 1 when the goal holds, else 0. Success ends the episode.)");
   bind_units(bound);
   bind_interface(bound);
   bind_states(bound);
+  bound.def("__reduce__", [](const tasks::Task& task) {
+    config::Config config;
+    config.task = task;
+    return nb::make_tuple(nb::module_::import_("rtg.pickling").attr("task_of"),
+                          nb::make_tuple(canonical_yaml(config)));
+  });
 }
 
 }  // namespace rtg::bindings

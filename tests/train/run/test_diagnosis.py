@@ -65,6 +65,21 @@ def test_few_solved_pushes_are_the_first_suspect() -> None:
     assert "reverse solves: 2,000 of 6,000 found a push" in said(converged=2_000, starts_reached=0)
 
 
+def test_an_object_too_heavy_for_the_robot_is_told_by_check_and_by_runs_that_reach_no_start() -> (
+    None
+):
+    config = _core.Config.from_file(
+        paths.CONFIG / "gathering.yaml", ["task.bodies.2.density=40", "task.bodies.3.density=4"]
+    )
+    heavy = "'box2' by 0.17 of a stride at most"
+    assert config.heavy_bodies == [heavy] and CONFIG.heavy_bodies == []
+    assert f"a push moves {heavy}: its mass is large" in config.description
+    bad = {**GOOD, "success_rate": None, "starts_reached": 0}
+    words = found(bad, config)
+    assert words is not None and words.startswith(f"bottleneck: pushes: the robot moves {heavy}; ")
+    assert found({**bad, "starts_reached": 1}, config) is None
+
+
 def test_of_a_start_that_is_not_reached_each_object_is_told() -> None:
     words = said(starts_reached=0)
     assert "no tree does (3 grew, starts_reached is 0)" in words

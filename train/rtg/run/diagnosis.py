@@ -94,6 +94,11 @@ def of_starts(config: _core.Config, report: dict[str, Any]) -> str | None:
     """
     if config.search.generator not in TREE_GENERATORS or report["starts_reached"]:
         return None
+    if heavy := config.heavy_bodies:
+        return (
+            f"pushes: the robot moves {', '.join(heavy)}; try a denser robot "
+            "(task.bodies.0.density), lighter objects, or more physics.force_factor"
+        )
     trees = report["trees"]
     deepest = max(node["depth"] for node in report["nodes"])
     room = ", or wider ways between the fixed bodies" if any(config.task.fixed) else ""
