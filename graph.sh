@@ -3,10 +3,11 @@
 #
 #   ./graph.sh FOLDER [trainer [--resume] [--log NAMES] | recorder]
 #
-# FOLDER/config.yaml is the resolved configuration (./run.sh TASK --print-config), FOLDER/run.key the secret of the run on
-# the bus, which is made if there is none. FOLDER gets generation.json, logs/PROGRAM.log, and what the trainer writes or,
-# of the recorder, transitions.npz alone.
-# Environment: RTG_RUN, the name of a new key (FOLDER's), RTG_NODES (build/release/nodes), RTG_PYTHON (.venv/bin/python).
+# FOLDER/config.yaml is the resolved configuration (./run.sh TASK --print-config). FOLDER gets generation.json,
+# logs/PROGRAM.log, and what the trainer writes or, of the recorder, transitions.npz alone; while the programs run also
+# run.key, the secret of the run on the bus, a new one each time: with an old one, messages of then would count again.
+# Environment: RTG_RUN, the name of the key (FOLDER's), RTG_KEY=given: FOLDER has it already, RTG_NODES
+# (build/release/nodes), RTG_PYTHON (.venv/bin/python).
 # Workers, server and logger are started again when they die before the coordinator has ended, and the coordinator when it
 # is killed: it goes on from FOLDER/generation.journal, which the consumer removes in the end. Where another program fails,
 # all end with its status; where the search falls short, with 1 after the consumer. SIGINT, SIGTERM or SIGHUP ends all, the
@@ -55,6 +56,7 @@ stop() { # STATUS: ends all programs, at once on a further SIGINT or SIGTERM, an
   while kill -0 $pids && ((SECONDS < deadline)); do sleep 0.1; done
   kill -KILL $pids
   wait
+  if [[ ${RTG_KEY:-} != given ]]; then rm -f "$key"; fi
   exit "$1"
 }
 
@@ -111,7 +113,10 @@ unwritable="'$folder' cannot be written (.graph.lock, logs/, generation.json); l
 # Who only asks whether it is held has it for a moment, too.
 flock --wait 1 "$held" || refuse "another graph.sh works in '$folder'; legal: another folder, or wait"
 { mkdir -p "$logs" && [[ -w $logs ]] && rm -f "$folder/generation.json"; } 2>/dev/null || refuse "$unwritable"
-if [[ ! -e $key ]]; then "$python" -m rtg.bus.new_key "$key" "${RTG_RUN:-${folder##*/}}" || exit; fi
+if [[ ${RTG_KEY:-} != given ]]; then
+  rm -f "$key"
+  "$python" -m rtg.bus.new_key "$key" "${RTG_RUN:-${folder##*/}}" || exit
+fi
 exec 2>/dev/null # bash's own words about programs that have ended
 trap 'stop 130' INT
 trap 'stop 143' TERM

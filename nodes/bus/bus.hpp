@@ -52,7 +52,8 @@ class Bus {
     send_sealed(channel, encode(msg), copies);
   }
 
-  /// Makes spin() pass the messages of `channel` to `handler`, also to earlier ones.
+  /// Makes spin() pass the messages of `channel` to `handler`, also to earlier ones. A handler must
+  /// not call subscribe() or unsubscribe().
   template <class Msg>
   void subscribe(const std::string& channel, std::function<void(const Msg&)> handler) {
     handlers_[channel].push_back(

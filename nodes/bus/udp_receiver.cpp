@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <system_error>
@@ -47,6 +48,7 @@ bool join(int socket, const BusUrl& url) {
   const ip_mreq membership{{ipv4(url.group)}, {INADDR_ANY}};
   return set(socket, SOL_SOCKET, SO_REUSEADDR, 1) &&
          set(socket, SOL_SOCKET, SO_RCVBUF, UdpReceiver::kBufferBytes) &&
+         set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
          set(socket, IPPROTO_IP, IP_MULTICAST_ALL, 0) &&  // groups that others have joined
          bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
          set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership);
@@ -70,14 +72,26 @@ std::optional<std::span<const std::uint8_t>> UdpReceiver::next(std::chrono::mill
     if (poll(&ready, 1, static_cast<int>(timeout.count())) < 0) counters.add("bus.interrupted");
   }
   sockaddr_in from{};
-  socklen_t length = sizeof from;
-  const ssize_t size = recvfrom(socket_.number(), bytes_.data(), bytes_.size(), 0,
-                                reinterpret_cast<sockaddr*>(&from), &length);
+  iovec bytes{bytes_.data(), bytes_.size()};
+  alignas(cmsghdr) std::array<std::uint8_t, CMSG_SPACE(sizeof overflowed_)> control;
+  msghdr message{&from, sizeof from, &bytes, 1, control.data(), control.size(), 0};
+  const ssize_t size = recvmsg(socket_.number(), &message, 0);
   if (size < 0) return std::nullopt;  // none, or a wrong checksum, which the kernel drops
-  if (is_known(from.sin_addr.s_addr))
-    return std::span(bytes_).first(static_cast<std::size_t>(size));
-  counters.add("bus.stranger");
+  count_overflows(message, counters);
+  const bool known = is_known(from.sin_addr.s_addr);
+  if (known && size > 0) return std::span(bytes_).first(static_cast<std::size_t>(size));
+  counters.add(known ? "bus.malformed" : "bus.stranger");
   return std::span<const std::uint8_t>();
+}
+
+/// The kernel tells with each datagram how many it has dropped so far, modulo 2³².
+void UdpReceiver::count_overflows(msghdr& message, Counters& counters) {
+  const cmsghdr* head = CMSG_FIRSTHDR(&message);
+  if (!head || head->cmsg_level != SOL_SOCKET || head->cmsg_type != SO_RXQ_OVFL) return;
+  std::uint32_t dropped = 0;
+  std::memcpy(&dropped, CMSG_DATA(head), sizeof dropped);
+  if (dropped != overflowed_) counters.add("bus.overflowed", dropped - overflowed_);
+  overflowed_ = dropped;
 }
 
 std::string UdpReceiver::warning() const {

@@ -12,6 +12,8 @@
 #include "nodes/bus/counters.hpp"
 #include "nodes/files/descriptor.hpp"
 
+struct msghdr;
+
 namespace rtg::bus {
 
 /// What helps where multicast does not work.
@@ -19,7 +21,8 @@ inline constexpr const char* kMulticastRemedy =
     "To mend it: sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo";
 
 /// The receiving end of a multicast group. It hears the processes of this machine and the peers
-/// that the URL names; datagrams of all others are dropped and counted ("bus.stranger").
+/// that the URL names; datagrams of all others are dropped and counted ("bus.stranger"), as are
+/// empty ones ("bus.malformed") and those for which there was no room ("bus.overflowed").
 ///
 /// LCM's own receiver is not used: it believes the bytes that it gets (a channel without its final
 /// NUL ends the process), keeps every channel name that it has heard, and hears other machines.
@@ -40,9 +43,11 @@ class UdpReceiver {
   std::string warning() const;
 
  private:
+  void count_overflows(msghdr& message, Counters& counters);
   bool is_known(std::uint32_t address) const;  // in network byte order
 
   files::Descriptor socket_;
+  std::uint32_t overflowed_ = 0;   // datagrams for which the buffer had no room
   std::set<std::uint32_t> known_;  // addresses of this machine and the peers
   std::array<std::uint8_t, 65536> bytes_;
 };

@@ -118,13 +118,13 @@ std::optional<Journal::Record> Journal::record_at(std::int64_t place) const {
   return Record{id, {record.begin() + kHeadBytes, record.end()}};
 }
 
-/// Fills `bytes` with those from `place` on. Returns false if the file ends before, or cannot be
-/// read there.
+/// Fills `bytes` with those from `place` on. Returns false if the file ends before.
 bool Journal::read(std::int64_t place, std::span<std::uint8_t> bytes) const {
   while (!bytes.empty()) {
     const ssize_t size = ::pread(file_.number(), bytes.data(), bytes.size(), place);
     if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) return false;
+    if (size < 0) fail("cannot be read: " + std::generic_category().message(errno));
+    if (size == 0) return false;
     bytes = bytes.subspan(static_cast<std::size_t>(size));
     place += size;
   }

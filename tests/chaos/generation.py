@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from graph import Graph, generated_in_process, lost
+from graph import Graph, finish, generated_in_process
 from network import Network
 from processes import freeze
 
@@ -23,7 +23,6 @@ class End(NamedTuple):
     """How a generation ended."""
 
     seconds: float
-    lost: int  # rows that the consumer lacks
     rows: bytes  # its transitions.npz
 
 
@@ -56,12 +55,12 @@ class Generation:
 
     def end(self) -> End:
         """Waits for the end. Raises SystemExit if a program failed or units were given up."""
-        rows_lost = lost(self._consumer)
+        finish(self._consumer)
         taken = time.monotonic() - self._begun
         status = self._programs[COORDINATOR].wait(60)
         if status != 0:
             raise SystemExit(f"the coordinator ended with status {status}: units were given up")
-        return End(taken, rows_lost, self.graph.transitions())
+        return End(taken, self.graph.transitions())
 
 
 def undisturbed(folder: Path) -> bytes:

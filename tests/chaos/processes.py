@@ -23,11 +23,17 @@ def resident(pid: int | str = "self") -> float:
     return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE / 1e6
 
 
+def is_stopped(pid: int) -> bool:
+    """Returns whether a process stands still, or is no more."""
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] in "TZ"
+
+
 def freeze(process: subprocess.Popen[str], seconds: float) -> bool:
     """Stops a process for so long. Returns whether there was one: it may have ended before."""
     if process.poll() is not None:
         return False
     process.send_signal(signal.SIGSTOP)
     time.sleep(seconds)
+    assert is_stopped(process.pid)
     process.send_signal(signal.SIGCONT)
     return True

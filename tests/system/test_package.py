@@ -87,7 +87,9 @@ def test_the_parts_work_from_a_wheel_in_any_folder(installed: Path, tmp_path: Pa
 
 def test_a_wheel_brings_the_libraries_of_debian(installed: Path) -> None:
     (package,) = installed.parents[1].glob("lib/python*/site-packages/rtg")
-    for file in [*package.glob("_core.*.so"), *(package / "programs").glob("rtg_*")]:
+    files = [*package.glob("_core.*.so"), *(package / "programs").glob("rtg_*")]
+    assert len(files) == 4
+    for file in files:
         found = dict(re.findall(r"(\S+) => (\S+)", run(["ldd", file])))
         assert "not" not in found.values()  # as in "=> not found"
         theirs = {

@@ -170,8 +170,8 @@ void bind_reverse(nb::module_& module) {
       .def("solve", &solve, nb::arg("ends"), nb::arg("actions"), nb::arg("threads") = 1,
            R"(Solves N problems. [N, bodies, 3], [N]
 
-States to end in are in units of the core, what is found in metres, kilograms and seconds, but
-infeasibility and stationarity. Returns the arrays "status" (into SOLVE_STATUSES), "iterations" and "found" (number of
+`ends` are in units of the core. Results are in metres, kilograms and seconds, except
+infeasibility and stationarity, which are in units of the core: the arrays "status" (into SOLVE_STATUSES), "iterations" and "found" (number of
 starts) [N], "starts" [N, 8, bodies, 3], "trajectory" [N, h + 1, bodies, 3], "controls" [N,
 h, 3], "figures" (objective, infeasibility, stationarity) [N, 3], NaN where there is none,
 and "contacts": the arrays "solve", "sub_step", "body", "other", "force" [C], "point" and

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <numbers>
 #include <sstream>
 
 #include "core/world/separation.hpp"
@@ -11,7 +13,7 @@ namespace {
 
 std::string in_words(double number) {
   std::ostringstream words;
-  words << number;
+  words << std::setprecision(8) << number;
   return words.str();
 }
 
@@ -21,9 +23,9 @@ std::string in_words(const Pose& pose, double metre) {
 }
 
 bool off_place(const Pose& pose, const Pose& place) {
-  constexpr double kOff = 1e-5;  // more than single precision explains [m, rad]
-  return std::max({std::abs(pose.x - place.x), std::abs(pose.y - place.y),
-                   std::abs(pose.theta - place.theta)}) > kOff;
+  constexpr double kOff = 1e-4;  // more than single precision explains [m, rad]
+  const double turn = std::remainder(pose.theta - place.theta, 2.0 * std::numbers::pi);
+  return std::max({std::abs(pose.x - place.x), std::abs(pose.y - place.y), std::abs(turn)}) > kOff;
 }
 
 }  // namespace

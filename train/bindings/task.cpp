@@ -92,10 +92,10 @@ nb::ndarray<nb::numpy, double> from_metres(const tasks::Task& task, const StateA
   OwnedArray<double> out(states.shape(0) * bodies * 3);
   for (std::size_t row = 0; row < states.shape(0); ++row) {
     Poses poses = state_at(states, row);
+    for (Pose& pose : poses) pose = {metre * pose.x, metre * pose.y, pose.theta};
     if (!is_finite(poses))
       throw nb::value_error(
           (name + " hold numbers that are not finite; legal: finite ones").c_str());
-    for (Pose& pose : poses) pose = {metre * pose.x, metre * pose.y, pose.theta};
     if (const std::string defect = place_defect(task, poses); !defect.empty())
       throw nb::value_error(
           (name + ": row " + std::to_string(row) + " has " + defect +

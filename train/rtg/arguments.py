@@ -35,7 +35,8 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
     negative or too large.
     """
     parameters = inspect.signature(function).parameters.values()
-    names = [one.name for one in parameters if one.kind is not one.VAR_POSITIONAL]
+    by_place = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    names = [one.name for one in parameters if one.kind in by_place]
 
     @functools.cache
     def kinds() -> Mapping[str, list[_Kind]]:

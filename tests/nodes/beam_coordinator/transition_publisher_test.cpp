@@ -106,9 +106,10 @@ TEST_F(TransitionPublisherTest, SaysHowLongTheStreamIsAndWhetherItIsSealed) {
   publisher.store(rows(0, 3));
   tick();
   publisher.store(rows(3, 4));
+  publisher.tick(now);  // too soon for another tail
   publisher.seal();
-  tick();
-  publisher.tick(now + 0.1);  // too soon for another one
+  publisher.tick(now);
+  publisher.tick(now + 0.1);  // too soon again
   deliver();
   ASSERT_EQ(tails.size(), 2U);
   EXPECT_EQ(std::pair(tails[0].count, int{tails[0].sealed}), std::pair(std::int64_t{3}, 0));

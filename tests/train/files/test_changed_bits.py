@@ -179,6 +179,16 @@ def repacked(members: dict[str, bytes], path: Path) -> None:
             archive.writestr(name, content)
 
 
+@pytest.mark.parametrize("name", ARCHIVES)
+def test_an_archive_that_lost_its_end_is_refused(name: str, tmp_path: Path) -> None:
+    kind, path = KINDS[name], tmp_path / name
+    kind.write(path)
+    whole = path.read_bytes()
+    for lost in range(1, 100):  # all of the digest, of 64 bytes, is among it
+        path.write_bytes(whole[:-lost])
+        assert outcome(kind, path)
+
+
 @pytest.mark.parametrize("name", [*ARCHIVES, "own.npz"])
 def test_archives_of_others_are_read_or_refused(name: str, tmp_path: Path) -> None:
     kind, path = ARCHIVES.get(name, OWN), tmp_path / name

@@ -34,9 +34,10 @@ class Graph:
         self.run_folder = folder / "a run"
         self.run_folder.mkdir()
         (self.run_folder / "config.yaml").write_text(CONFIG)
-        (self.run_folder / "run.key").touch()  # else the script has one made
         self.bin = folder / "bin"
         self.bin.mkdir()
+        python = str(self.bin / "python")
+        self.settings = {"RTG_NODES": str(self.bin), "RTG_PYTHON": python, "RTG_KEY": "given"}
         for name, script in PROGRAMS.items():
             self.let(name, script)
 
@@ -47,7 +48,7 @@ class Graph:
     def start(self, *words):
         return subprocess.Popen(
             [paths.ROOT / "graph.sh", self.run_folder, *words],
-            env={**os.environ, "RTG_NODES": self.bin, "RTG_PYTHON": self.bin / "python"},
+            env={**os.environ, **self.settings},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -163,7 +164,6 @@ def test_a_failure_of_coordinator_or_trainer_ends_the_run_with_its_last_words(gr
 
 def test_a_killed_coordinator_with_a_journal_is_started_again(graph):
     journal = graph.run_folder / "generation.journal"
-    (graph.run_folder / "run.key").touch()
     killed = f'echo >> "{journal}"; if (($(stat -c %s "{journal}") < 15)); then kill -KILL $$; fi'
     graph.let("rtg_beam_coordinator", f"{killed}; {DONE}")
     graph.let(
@@ -175,7 +175,6 @@ def test_a_killed_coordinator_with_a_journal_is_started_again(graph):
 
 @pytest.mark.parametrize(("journal", "starts"), [("touch", 10), (":", 1)])
 def test_a_coordinator_killed_without_adding_to_a_journal_ends_the_run(graph, journal, starts):
-    (graph.run_folder / "run.key").touch()
     killed = f'echo memory; {journal} "{graph.run_folder}/generation.journal"; kill -KILL $$'
     graph.let("rtg_beam_coordinator", killed)
     graph.let("python", PATIENT)
@@ -260,7 +259,7 @@ def test_a_closed_terminal_leaves_the_trainer_time_for_its_checkpoint(graph):
     graph.let("python", orderly)
     shell, terminal = pty.fork()
     if shell == 0:
-        os.environ |= {"RTG_NODES": str(graph.bin), "RTG_PYTHON": str(graph.bin / "python")}
+        os.environ |= graph.settings
         os.execvp("bash", ["bash", "--norc", "-i"])
     os.write(terminal, f"'{paths.ROOT / 'graph.sh'}' '{graph.run_folder}'\n".encode())
     log = graph.run_folder / "logs" / "trainer.log"

@@ -45,7 +45,7 @@ def record(config: _core.Config, key: _core.RunKey, file: Path) -> None:
             _say(f"has {stream.received} transitions")
     recorder.finish(file)
     stream.close()
-    _say(f"ends, {stream.lost} transitions lost")
+    _say(f"ends with {stream.received} transitions")
 
 
 def _main(argv: list[str]) -> int:

@@ -58,7 +58,8 @@ def opened(path: Path) -> Iterator[BinaryIO]:
         size = file.seek(0, os.SEEK_END)
         file.seek(max(0, size - _END_LENGTH - _DIGITS))
         tail = file.read()
-        is_bare = tail[-_END_LENGTH:].startswith(_END)  # it ends without a comment
+        end = tail[-_END_LENGTH:]
+        is_bare = end.startswith(_END) and end.endswith(b"\0\0")  # it ends, and has no comment
         if not is_bare and not (
             tail.startswith(_END) and _digest(file, size - _DIGITS) == tail[-_DIGITS:]
         ):

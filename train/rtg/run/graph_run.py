@@ -79,6 +79,7 @@ class GraphRun:
         flags = [*(["--resume"] if plan.resume else []), *log_sinks.flags(plan.sinks)]
         consumer = ["trainer", *flags] if plan.train else ["recorder"]
         settings = (
+            "RTG_KEY=given",
             f"RTG_NODES={os.environ.get('RTG_NODES', paths.PROGRAMS)}",
             f"RTG_PYTHON={os.environ.get('RTG_PYTHON', sys.executable)}",
         )

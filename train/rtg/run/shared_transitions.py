@@ -81,6 +81,7 @@ def take_over(source: Path, run: Path) -> None:
     versions.write(run, made_by.get(versions.ENGINE_KEY), made_by)
     for name in _FILES:
         draft = run / f".{name}.{os.getpid()}"
+        draft.unlink(missing_ok=True)  # of a process that was killed, whose number we have now
         try:
             os.link(source / name, draft)
         except OSError:
