@@ -152,3 +152,10 @@ def test_wrong_arrays_are_named(states: np.ndarray, actions: list[int], message:
     for call in (rtg.ReverseSimulator(task).solve, rtg.forward.Newton(task).push):
         with pytest.raises(ValueError, match=message):
             call(states, actions)
+
+
+def test_masses_are_in_kilograms_and_solutions_say_how_they_ended(solved) -> None:
+    task, _, found = solved
+    np.testing.assert_allclose(task.masses, [0.25 * np.pi, 7.0])  # a disc of 0.5 m, the T
+    counts = [f"{found.status.count(s)} {s}" for s in dict.fromkeys(found.status)]
+    assert repr(found) == f"ReverseSolutions of {task.actions} pushes: {', '.join(counts)}"

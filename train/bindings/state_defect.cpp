@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <numbers>
 #include <sstream>
 
@@ -13,7 +12,7 @@ namespace {
 
 std::string in_words(double number) {
   std::ostringstream words;
-  words << std::setprecision(8) << number;
+  words << number;
   return words.str();
 }
 

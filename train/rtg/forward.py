@@ -26,8 +26,10 @@ class Forward:
     def push(self, states: ArrayLike, actions: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
         """Simulates a push from each state. [N, bodies, 3], [N] -> [N, bodies, 3], [N]
 
-        Returns the states after the pushes, at rest, and whether each push could be finished.
-        Equal arguments give equal bits. Raises ValueError for wrong shapes.
+        States are in m and rad. The robot stops at the edge of the arena. Returns the states after
+        the pushes, at rest, and whether each push could be finished: not where bodies do not come
+        to rest, fly off or stay in each other. Equal arguments give equal bits. Raises ValueError
+        as Task.inner() does; bodies that overlap are pushed apart.
         """
         pushes = indices("action", actions, self.task.actions)
         after, ok = self._core.push(self.task.inner(states), pushes)
@@ -36,7 +38,7 @@ class Forward:
     def push_along(self, states: ArrayLike, ways: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
         """Like push(), with the way (x, y) [m] of the robot instead of an action. [N, 2]
 
-        A way has any direction and any length above 0.
+        A way has any direction and any length above 0; the arena cuts it off.
         """
         metres = numbers("ways", ways, (None, 2))
         after, ok = self._core.push_along(self.task.inner(states), metres * self.task.core.metre)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,9 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Contacts:
-    """The contacts of N solves that exert forces, C in all.
+    """The contacts of N solves that exert forces, C in all. Friction is not told.
+
+    Where corners of two bodies meet there are two, one of each body, whose forces add up.
 
     - `solve`: to which of the N solves each belongs. [C]
     - `sub_step`: at whose end it acts; 0: at the start of the push. [C]
@@ -37,7 +40,7 @@ class Contacts:
     force: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ReverseSolutions:
     """The results of N solves. NaN stands where a solve has no value.
 
@@ -46,7 +49,8 @@ class ReverseSolutions:
     states to go on from: the beginning of the trajectory, and others from which the push meets the
     objects later.
 
-    - `status`: "converged", "acceptable", "pruned", "infeasible", ... [N]
+    - `status`: "converged", "acceptable", "pruned", "infeasible", "iteration_limit",
+      "line_search_failed", "singular" or "non_finite"; the first two have starts. [N]
     - `iterations`: of the SQP. [N]
     - `starts`: for each solve [up to 8, bodies, 3] in m and rad; empty without a solution.
     - `trajectory`: [N, h + 1, bodies, 3] in m and rad.
@@ -66,6 +70,10 @@ class ReverseSolutions:
     infeasibility: Floats
     stationarity: Floats
     contacts: Contacts
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{n} {status}" for status, n in Counter(self.status).items())
+        return f"ReverseSolutions of {len(self.status)} pushes: {counts}"
 
     @property
     def solved(self) -> NDArray[np.bool_]:

@@ -60,6 +60,11 @@ class Task:
         return self.core.names
 
     @property
+    def masses(self) -> Floats:
+        """The masses of the bodies. [bodies] in kg"""
+        return np.array([body.mass for body in self.core.scene[0]]) / self.core.kilogram
+
+    @property
     def actions(self) -> int:
         """The number of actions, headings times strides."""
         return self.core.actions

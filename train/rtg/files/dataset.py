@@ -233,7 +233,7 @@ def _check_task(path: Path, data: Transitions, origin: Origin, task: _core.Task)
     if origin.task != task.content:
         raise DatasetError(
             f"{path}: has transitions of another task ({origin.task}); legal: {task.content}, "
-            f"which is '{task.name}'"
+            f"which is '{task.name}' with these bodies, goal and pushes"
         )
     if data.poses.shape[1] != task.bodies:
         raise DatasetError(

@@ -206,7 +206,8 @@ def _learning_text(plan: RunPlan, s: dict[str, Any]) -> list[str]:
         bar, count = 100 * train.stop_at_success, train.stop_evaluations
         evaluations = f"{count} evaluations in a row" if count > 1 else "an evaluation"
         lines.append(
-            f"{plan.interactions:,} interactions were not needed: {evaluations} had solved "
+            f"{plan.interactions - s['interactions']:,} of {plan.interactions:,} interactions were "
+            f"not needed: {evaluations} had solved "
             f"{bar:g}% or more (train.stop_at_success)"
         )
     return lines
