@@ -46,9 +46,10 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
 
     @functools.wraps(function)
     def call(*args: P.args, **kwargs: P.kwargs) -> R:
-        given = {**dict(zip(names, args, strict=False)), **kwargs}
-        for name in given.keys() & kinds().keys():
-            _check(name, given[name], kinds()[name])
+        known = kinds()
+        for name, value in (*zip(names, args, strict=False), *kwargs.items()):
+            if name in known:
+                _check(name, value, known[name])
         return function(*args, **kwargs)
 
     return call
@@ -118,7 +119,7 @@ def indices(name: str, given: ArrayLike, end: int) -> NDArray[np.int64]:
     column = np.atleast_1d(np.asarray(given))
     if column.ndim != 1 or (column.dtype.kind not in "iu" and column.size):
         raise ValueError(f"{name}s of type {column.dtype}; legal: whole numbers, [N]")
-    wrong = column[(column < 0) | (column >= end)]
-    if wrong.size:
+    if column.size and not 0 <= column.min() <= column.max() < end:
+        wrong = column[(column < 0) | (column >= end)]
         raise ValueError(f"{name} {int(wrong[0])}; legal: 0 to {end - 1}")
     return column.astype(np.int64)
