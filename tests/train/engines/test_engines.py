@@ -60,7 +60,9 @@ def test_a_simulator_can_be_pickled() -> None:
 
 
 def test_the_identity_is_the_version_or_else_the_source() -> None:
-    digest = hashlib.sha256((HERE / "toy_engines.py").read_bytes()).hexdigest()[:12]
+    ours = [Path(rtg.engines.__file__).with_name(name) for name in ("engine.py", "scene.py")]
+    files = [HERE / "toy_engines.py", *ours]
+    digest = hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:12]
     assert identity(of("Ghost").config) == f"toy_engines:Ghost sha256:{digest}"
     assert identity(of("Versioned").config) == "toy_engines:Versioned 1.2"
     slow = ["forward.engine=newton", "forward.friction=0.5"]
@@ -109,6 +111,21 @@ def test_what_another_engine_says_is_no_data_for_a_run(tmp_path: Path) -> None:
     run_folder.write_json(versions_file, found)
     with pytest.raises(UserError, match="begun with the forward simulator newton 2, and this is "):
         make_plan(run_args.parse(["--resume", "--out", between]))
+
+
+@pytest.mark.parametrize(("engine", "error"), [("Leaving", "SystemExit"), ("Ours", "RunError")])
+def test_no_error_of_a_push_ends_a_run_without_its_traceback(engine: str, error: str) -> None:
+    task = of(engine)
+    with pytest.raises(EngineError, match=rf"{error}: no licence\nin the state \[\["):
+        rtg.forward.Forward(task).push(task.start()[None], [0])
+
+
+def test_fixed_bodies_stay_to_the_bit() -> None:
+    task = of("Drifting", "drawer")
+    states, engine = task.inner(task.start()[None]), simulator(task.config)
+    for _ in range(40):
+        states, ok = engine.push(states, np.array([0]))
+        assert ok.all() and (states[0, 3] == task.core.start[3]).all()
 
 
 def test_a_failure_has_the_users_traceback_and_the_state() -> None:

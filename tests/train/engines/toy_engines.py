@@ -2,6 +2,7 @@
 
 import numpy as np
 from rtg.engines import Scene
+from rtg.errors import RunError
 
 
 class Ghost:
@@ -69,6 +70,23 @@ class Wind(Ghost):
 
     def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return states + 0.01, np.ones(len(states), bool)
+
+
+class Drifting(Ghost):
+    """Moves all by less than rounding might, and turns them around."""
+
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return states + np.array([3e-6, 0.0, 2.0 * np.pi]), np.ones(len(states), bool)
+
+
+class Leaving(Ghost):
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        raise SystemExit("no licence")
+
+
+class Ours(Ghost):
+    def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        raise RunError("no licence")
 
 
 class Helpless(Ghost):

@@ -77,7 +77,9 @@ class _Outer:
         self._config, self._task = config, config.task
         self._name: str = config.forward.engine
         made = _class_of(self._name)
-        self._engine: Engine = self._guarded(lambda: made(Scene(config)), "when it was made")
+        self._engine: Engine = self._guarded(
+            lambda: made(Scene(config)), "when it was made", (UserError, RunError)
+        )
         own: Any = self._guarded(lambda: getattr(self._engine, "version", None), "for its version")
         if own is not None and not (isinstance(own, str) and own.isprintable()):
             raise UserError(f"{self._prefix()}: its version is {own!r}; legal: a text of one line")
@@ -101,7 +103,10 @@ class _Outer:
         robot = states[:, 0, :2]
         inside = np.clip(robot + ways, -arena, arena) - robot
         ends, ok = self._checked(states / metre, inside / self._task.metre)
-        after = (ends * metre).astype(np.float32).astype(np.float64)
+        with np.errstate(over="ignore"):  # is_legal() refuses infinite ones
+            after = (ends * metre).astype(np.float32).astype(np.float64)
+        fixed = self._task.fixed
+        after[:, fixed] = states[:, fixed]
         ok = ok & self._task.is_legal(after)
         return np.where(ok[:, None, None], after, states), ok
 
@@ -109,7 +114,7 @@ class _Outer:
         """Asks the engine; if it fails, state by state, to tell of the one at fault."""
         try:
             answer = self._engine.push(states.copy(), ways.copy())
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             failure = error
         else:
             return self._answer(answer, states)
@@ -131,10 +136,9 @@ class _Outer:
             if (wrong := ok & ~np.isfinite(ends).all((1, 2))).any():
                 where = states[wrong][0].tolist()
                 raise ValueError(f"with True numbers that are not finite for the state {where}")
-            fixed = self._task.fixed
-            moved = (
-                np.abs(ends - states)[:, fixed].max((1, 2), initial=0.0) > _STILL / self._task.metre
-            )
+            way = (ends - states)[:, self._task.fixed] * [self._task.metre, self._task.metre, 1.0]
+            way[..., 2] = np.remainder(way[..., 2] + np.pi, 2.0 * np.pi) - np.pi
+            moved = np.abs(way).max((1, 2), initial=0.0) > _STILL
             if (wrong := ok & moved).any():
                 where = states[wrong][0].tolist()
                 raise ValueError(f"with True fixed bodies that have moved, for the state {where}")
@@ -145,15 +149,18 @@ class _Outer:
                 f"({len(states)},) of bool"
             ) from error
 
-    def _guarded(self, call: Callable[[], Any], when: str) -> Any:
+    def _guarded(
+        self, call: Callable[[], Any], when: str, ours: tuple[type[Exception], ...] = (EngineError,)
+    ) -> Any:
+        """Turns what a call raises into an EngineError, but for errors that are ours already."""
         try:
             return call()
-        except (UserError, RunError):
+        except ours:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise self._failure(error, when) from None
 
-    def _failure(self, error: Exception, when: str) -> EngineError:
+    def _failure(self, error: BaseException, when: str) -> EngineError:
         return EngineError(f"{self._prefix()} failed:\n{_lines(error)}\n{when}")
 
     def _prefix(self) -> str:
@@ -169,9 +176,13 @@ def _lines(error: BaseException) -> str:
 
 
 def _source_digest(made: Callable[[Scene], Engine]) -> str:
-    """Returns the beginning of the SHA-256 of the file of a class; "?" if it has none."""
+    """Returns the beginning of the SHA-256 of the file of a class, and of what stands around it.
+
+    Returns "?" if the class has no file.
+    """
     try:
-        source = Path(inspect.getfile(made)).read_bytes()
+        files = [Path(inspect.getfile(one)) for one in (made, _Outer, Scene)]
+        source = b"".join(file.read_bytes() for file in files)
     except (TypeError, OSError):
         return "?"
     return f"sha256:{hashlib.sha256(source).hexdigest()[:12]}"

@@ -67,7 +67,9 @@ class _Model:
             tolerance="1e-10",
         )
         # Without a warm start a push depends on its arguments alone.
-        ElementTree.SubElement(option, "flag", multiccd="enable", warmstart="disable")
+        ElementTree.SubElement(
+            option, "flag", multiccd="enable", warmstart="disable", autoreset="disable"
+        )
         self._assets = ElementTree.SubElement(self._root, "asset")
         world = ElementTree.SubElement(self._root, "worldbody")
         self._actuators = ElementTree.Element("actuator")

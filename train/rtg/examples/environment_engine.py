@@ -23,6 +23,6 @@ class Environment:
             except ValueError:  # such as bodies that overlap
                 ok[k] = False
                 continue
-            self.env.step(np.float32(ways[k] / self.stride))
+            ok[k] = not self.env.step(np.float32(ways[k] / self.stride))[4]["rejected"]
             ends[k] = self.env.get_state()["poses"]
         return ends, ok

@@ -12,7 +12,7 @@ class Pymunk:
     def __init__(self, scene: rtg.engines.Scene) -> None:
         speed = scene.stride / scene.push_s
         self.scene = scene
-        self.force = scene.force_factor * scene.bodies[0].mass * scene.damping * speed
+        self.drag = scene.bodies[0].mass * scene.damping * speed
 
     def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         ends = np.array([self.end(*push) for push in zip(states, ways, strict=True)])
@@ -41,7 +41,8 @@ class Pymunk:
         hand.position, hand.angle = robot.position, robot.angle
         space.add(hand, pull := pymunk.PivotJoint(hand, robot, (0, 0), (0, 0)))
         space.add(turn := pymunk.GearJoint(hand, robot, 0.0, 1.0))
-        pull.max_force, turn.max_force = self.force, self.force * self.scene.size
+        pull.max_force = self.drag * self.scene.force_factor
+        turn.max_force = self.drag * self.scene.torque_factor * self.scene.size
         for steps, velocity in (STEPS, way / self.scene.push_s), (REST, np.zeros(2)):
             hand.position, hand.velocity = robot.position, velocity.tolist()
             for _ in range(steps):
