@@ -84,7 +84,7 @@ def test_joints_stay_closed() -> None:
     task = rtg.load_task("cable", ["forward.engine=mujoco"])
     states, actions = meeting_pushes(task, 30)
     ends, ok = rtg.forward.Forward(task).push(states, actions)
-    assert ok.sum() > 20
+    assert ok.mean() > 0.95  # some chains take long to come to rest
     scene = rtg.engines.Scene(task.config)
 
     def places(body: int, point: np.ndarray) -> np.ndarray:

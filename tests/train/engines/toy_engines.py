@@ -93,7 +93,7 @@ class Helpless(Ghost):
     """Cannot simulate any push."""
 
     def push(self, states: np.ndarray, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return states, ~self.scene.is_free(states, 0.0 * ways)
+        return states, np.zeros(len(states), bool)
 
 
 class Unmade(Ghost):

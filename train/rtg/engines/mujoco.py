@@ -14,6 +14,7 @@ from rtg.engines.scene import Body, Bools, Floats, Joint, Scene
 _STEPS = 250  # of a push
 _LATE_STEPS = 10  # more, as contacts delay the robot
 _REST_STEPS = 75  # afterwards, with the robot held where it is
+_REST_ROLLS = 8  # so often, until all bodies are at rest: chains take long
 _AT_REST = 0.01  # largest speed of a body that has come to rest [sizes of the robot / s], [rad/s]
 # Lengths in sizes of the robot:
 _SKIN = 0.025  # bodies in contact keep this far apart, as in Box2D
@@ -344,10 +345,18 @@ class MuJoCo:
         pushed = pushed[np.arange(len(states)), most - 1]
         # The robot stays where its force has taken it, until all have come to rest.
         held = np.repeat(pushed[:, None, 1:4], _REST_STEPS, 1)
-        last = self._rolled(pushed, held)[:, -1, 1:]
-        speeds = np.abs(last[:, self._model.nq : self._model.nq + self._model.nv])
-        rests = np.isfinite(last).all(axis=1) & (speeds < _AT_REST).all(axis=1)
-        return self._made.states_of(last[:, : self._model.nq], states), np.asarray(rests)
+        last, moving = pushed, np.arange(len(states))
+        for _ in range(_REST_ROLLS):
+            last[moving] = self._rolled(last[moving], held[moving])[:, -1]
+            moving = moving[~self._rests(last[moving, 1:])]
+            if not moving.size:
+                break
+        ended = self._made.states_of(last[:, 1 : 1 + self._model.nq], states)
+        return ended, ~np.isin(np.arange(len(states)), moving)
+
+    def _rests(self, states: Floats) -> Bools:
+        speeds = np.abs(states[:, self._model.nq : self._model.nq + self._model.nv])
+        return np.asarray(np.isfinite(states).all(axis=1) & (speeds < _AT_REST).all(axis=1))
 
     def _rolled(self, states: Floats, robot: Floats) -> Floats:
         """Returns the states after each step. `robot`: where it is drawn to. [N, steps, 3]"""

@@ -1,4 +1,4 @@
-"""Your own forward simulator in the place of Box2D: a class, in 60 lines."""
+"""Your own forward simulator in the place of Box2D: pymunk, by the class in pymunk_engine.py."""
 
 import sys
 from pathlib import Path
