@@ -194,10 +194,11 @@ def test_help_does_not_wait_for_heavy_imports():
     assert done.stdout.splitlines()[-1] == "[]"
 
 
-def test_a_tool_whose_extra_is_missing_names_it(monkeypatch, capsys):
+def test_a_tool_whose_extra_is_missing_names_it(monkeypatch, capsys, tmp_path):
+    (tmp_path / "config.yaml").touch()
     for tool, module in (("spy", "textual"), ("view", "rerun")):
         monkeypatch.setitem(sys.modules, module, None)
-        assert cli.main([tool] if tool == "spy" else [tool, "runs"]) == 2
+        assert cli.main([tool] if tool == "spy" else [tool, str(tmp_path)]) == 2
         error = capsys.readouterr().err
         assert error.startswith(f"rtg: {tool} needs the Python package {module}, which is not")
 

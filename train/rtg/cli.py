@@ -185,6 +185,7 @@ def _view(words: Sequence[str]) -> int:
     if not args.port.isdecimal() or not 1024 <= int(args.port) <= 65_534:
         raise UserError(f"--port {args.port}: legal: a number from 1024 to 65534")
     folder = args.folder or run_folder.newest()
+    run_folder.config_file(folder)  # a wrong folder is told before a package that it would need
     extras.require("rerun", "view", "view")
     from rtg.view import view
 
