@@ -17,6 +17,10 @@ struct Units {
   double length_of(double metres) const { return on_grid(metres / length); }
   double density_of(double given) const { return on_grid(given / density); }
 
+  /// Return one metre and one kilogram in these units.
+  double metre() const { return 1.0 / length; }
+  double kilogram() const { return 1.0 / (density * length * length); }
+
   /// Returns rounded(x), or x if these units do not round.
   double on_grid(double x) const { return rounds ? rounded(x) : x; }
 

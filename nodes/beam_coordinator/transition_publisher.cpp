@@ -29,7 +29,7 @@ void TransitionPublisher::store(std::span<const search::Transition> rows) {
 void TransitionPublisher::seal() {
   const std::scoped_lock lock(mutex_);
   server_.seal();
-  tail_ = bus::Ticker(kTailInterval);  // consumers learn it at the next tick()
+  tail_.hurry();  // consumers learn it at the next tick()
 }
 
 void TransitionPublisher::tick(bus::Seconds now) {

@@ -47,9 +47,7 @@ class TransitionPublisher {
 
   bus::Bus& bus_;
   std::int64_t stream_;
-  static constexpr bus::Seconds kTailInterval = 0.2;
-
-  bus::Ticker tail_{kTailInterval};
+  bus::Ticker tail_{0.2};
   mutable std::mutex mutex_;  // guards the members below
   stream::StreamServer server_;
 };

@@ -24,6 +24,9 @@ class Ticker {
     return true;
   }
 
+  /// Makes it due() at once.
+  void hurry() { next_ = 0.0; }
+
  private:
   Seconds interval_;
   Seconds next_ = 0.0;

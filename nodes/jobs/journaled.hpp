@@ -44,11 +44,10 @@ Batch journaled(Batch batch, UnitJournal& journal, const TaskShape& shape) {
     for (const JobId id : units.deal(jobs, shape, journal.generation())) {
       const std::span<const Job> unit = units.jobs(id);
       const auto known = journal.find<Service>(id, unit.size(), shape);
-      if (known && !known->empty()) {
+      if (known && !known->empty())
         units.store(id, *known);
-      } else {
+      else
         open.push_back(id);
-      }
     }
     auto left = std::span(open);
     do {

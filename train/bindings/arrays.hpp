@@ -100,11 +100,11 @@ inline Poses only_state(const StateArray& states, std::size_t bodies) {
   return state_at(states, 0);
 }
 
-/// Writes x, y, θ of each body to `out`, which has room for 3·bodies numbers.
-inline void write_state(const Poses& poses, double* out) {
+/// Writes x, y, θ of each body to `out`, which has room for 3·bodies numbers; x and y in `unit`s.
+inline void write_state(const Poses& poses, double* out, double unit = 1.0) {
   for (const Pose& p : poses) {
-    *out++ = p.x;
-    *out++ = p.y;
+    *out++ = p.x / unit;
+    *out++ = p.y / unit;
     *out++ = p.theta;
   }
 }

@@ -38,19 +38,10 @@ struct TaskReverse {
         sub_steps(
             static_cast<std::size_t>(config.physics.sub_steps + config.physics.settling_steps())),
         actions(action_count(config.task.push)),
-        metre(1.0 / config.task.units.length),
-        kilogram(metre * metre / config.task.units.density),
+        metre(config.task.units.metre()),
+        kilogram(config.task.units.kilogram()),
         simulator(config.task.scene, config.physics, config.task.push, config.reverse) {}
 };
-
-/// Writes x [m], y [m], θ [rad] of each body to `out`.
-void write_in_metres(const Poses& poses, double metre, double* out) {
-  for (const Pose& p : poses) {
-    *out++ = p.x / metre;
-    *out++ = p.y / metre;
-    *out++ = p.theta;
-  }
-}
 
 /// An array [N, ...] of which each solve writes a row; rows that are not written are NaN.
 struct Rows {
@@ -112,10 +103,10 @@ nb::dict result_arrays(const TaskReverse& reverse,
     iterations.data[k] = r.iterations;
     found.data[k] = static_cast<std::int64_t>(r.predecessors.size());
     for (std::size_t n = 0; n < r.predecessors.size(); ++n)
-      write_in_metres(r.predecessors[n], metre, starts.row(k) + n * bodies * 3);
+      write_state(r.predecessors[n], starts.row(k) + n * bodies * 3, metre);
     if (!r.solution) continue;
     for (std::size_t n = 0; n < levels; ++n)
-      write_in_metres(r.solution->trajectory[n], metre, trajectory.row(k) + n * bodies * 3);
+      write_state(r.solution->trajectory[n], trajectory.row(k) + n * bodies * 3, metre);
     for (std::size_t n = 0; n < reverse.sub_steps; ++n)
       std::copy_n(r.solution->controls[n].data(), 3, controls.row(k) + 3 * n);
     figures.row(k)[0] = r.solution->objective / joule;
@@ -171,11 +162,12 @@ void bind_reverse(nb::module_& module) {
            R"(Solves N problems. [N, bodies, 3], [N]
 
 `ends` are in units of the core. Results are in metres, kilograms and seconds, except
-infeasibility and stationarity, which are in units of the core: the arrays "status" (into SOLVE_STATUSES), "iterations" and "found" (number of
-starts) [N], "starts" [N, 8, bodies, 3], "trajectory" [N, h + 1, bodies, 3], "controls" [N,
-h, 3], "figures" (objective, infeasibility, stationarity) [N, 3], NaN where there is none,
-and "contacts": the arrays "solve", "sub_step", "body", "other", "force" [C], "point" and
-"normal" [C, 2]. Raises ValueError for arrays that do not fit the task.)");
+infeasibility and stationarity, which are in units of the core: the arrays "status" (into
+SOLVE_STATUSES), "iterations" and "found" (number of starts) [N], "starts" [N, 8, bodies, 3],
+"trajectory" [N, h + 1, bodies, 3], "controls" [N, h, 3], "figures" (objective, infeasibility,
+stationarity) [N, 3], NaN where there is none, and "contacts": the arrays "solve", "sub_step",
+"body", "other", "force" [C], "point" and "normal" [C, 2]. Raises ValueError for arrays that do
+not fit the task.)");
 }
 
 }  // namespace rtg::bindings

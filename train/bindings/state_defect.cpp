@@ -30,7 +30,7 @@ bool off_place(const Pose& pose, const Pose& place) {
 }  // namespace
 
 std::string place_defect(const tasks::Task& task, const Poses& poses) {
-  const double metre = 1.0 / task.units.length;
+  const double metre = task.units.metre();
   PushConfig around = task.push;
   around.arena *= 2.0;
   for (std::size_t i = 0; i < poses.size(); ++i) {

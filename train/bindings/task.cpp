@@ -86,7 +86,7 @@ std::string defect_of(const tasks::Task& task, const StateArray& state) {
 /// Returns states in metres as the core takes them. `name`: that of the argument, for ValueError.
 nb::ndarray<nb::numpy, double> from_metres(const tasks::Task& task, const StateArray& states,
                                            const std::string& name) {
-  const double metre = 1.0 / task.units.length;
+  const double metre = task.units.metre();
   const std::size_t bodies = task.scene.size();
   check_bodies(states, bodies);
   OwnedArray<double> out(states.shape(0) * bodies * 3);
@@ -338,13 +338,10 @@ Fixed bodies come to lie in their places to the bit. `name`: that of the argumen
 ValueError for numbers that are not finite, for fixed bodies off their places, and for others
 out of twice the arena.)")
       .def_prop_ro(
-          "kilogram",
-          [](const tasks::Task& task) {
-            return 1.0 / (task.units.density * task.units.length * task.units.length);
-          },
+          "kilogram", [](const tasks::Task& task) { return task.units.kilogram(); },
           "One kilogram, in the unit of masses: that in which the robot's density is 1.")
       .def_prop_ro(
-          "metre", [](const tasks::Task& task) { return 1.0 / task.units.length; },
+          "metre", [](const tasks::Task& task) { return task.units.metre(); },
           "One metre, in the unit of lengths of poses: that in which the robot's radius is 0.8.");
 }
 
