@@ -22,13 +22,21 @@ bool write_new(const std::filesystem::path& path, const std::string& text, mode_
   return ::fsync(file.number()) == 0 && file.close();
 }
 
+/// Makes the names in `folder` survive a power cut. Returns false and sets errno if it could not.
+bool sync_names(const std::filesystem::path& folder) {
+  Descriptor names(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+  return names && ::fsync(names.number()) == 0 && names.close();
+}
+
 }  // namespace
 
 void write_atomically(const std::filesystem::path& path, const std::string& text, mode_t mode) {
   std::filesystem::path part = path;
   part += ".part";
   ::unlink(part.c_str());  // a killed writer left it
-  if (write_new(part, text, mode) && ::rename(part.c_str(), path.c_str()) == 0) return;
+  if (write_new(part, text, mode) && ::rename(part.c_str(), path.c_str()) == 0 &&
+      sync_names(path.parent_path()))
+    return;
   const std::error_code cause(errno, std::generic_category());
   ::unlink(part.c_str());
   throw std::system_error(cause, path.string() + " cannot be written");

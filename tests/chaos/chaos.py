@@ -91,8 +91,9 @@ class Chaos:
                         net.double(5)
 
                 ends[percent].append(disturbed(before=lose))
+        for percent, of_percent in ends.items():
+            self.report.same(f"loss_{percent}", of_percent, self._rows)
         for percent, bar in bars.items():
-            self.report.same(f"loss_{percent}", ends[percent], self._rows)
             self.report.most(f"loss_{percent}.time", _median(ends[percent]) / _median(ends[0]), bar)
 
     def kills(self) -> None:

@@ -32,8 +32,6 @@ def training(folder: Path) -> Training:
 class Stream:
     """Hands `rows` over in pieces, one per poll, as the stream of a run does."""
 
-    lost = 0
-
     def __init__(self, rows: Rows, data: OfflineData, piece: int) -> None:
         self.rows, self.data, self.piece, self.at = rows, data, piece, 0
 

@@ -113,7 +113,7 @@ def train(
         training = Training(config, run)
         source = FileSource(run / "transitions.npz", training.task, training.data)
         training.run(source, lambda: False, record=False)
-        training.finish(lost=0)
+        training.finish()
     finally:
         th.set_num_threads(threads)
     return load_policy(run)

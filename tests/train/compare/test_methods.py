@@ -239,7 +239,7 @@ def test_a_file_of_a_hindsight_policy_asks_for_the_nearest_layouts(tmp_path: Pat
     folder = run_folder(tmp_path / "run", None, "run.method=her", "task.horizon=5")
     one = training(folder)
     assert one.run(NoSource(), lambda: False, record=False)
-    one.finish(lost=0)
+    one.finish()
     values = policy_file.read(folder / "model.pt", one.task)
     seen = one.task.observation(np.stack([one.task.jittered_start(1.0, 5, k) for k in range(50)]))
     np.testing.assert_array_equal(values(seen), one.model.values(seen))

@@ -16,13 +16,13 @@ CONFIG = _core.Config.from_file(paths.CONFIG / "gathering.yaml", ["run.seed=7", 
 def write_parts(folder):
     report = {"transitions": 100, "contact_share": 0.5, "replay_gaps": [0.1], "nodes": [1]}
     run_folder.write_json(folder / "generation.json", report)
-    training = {"interactions": 400, "success_rate": 0.25, "lost_transitions": 3, "epsilon": 0.1}
+    training = {"interactions": 400, "success_rate": 0.25, "worker_restarts": 3, "epsilon": 0.1}
     run_folder.write_json(folder / "training.json", training)
 
 
 def test_the_summary_merges_both_halves_and_what_was_measured(tmp_path):
     write_parts(tmp_path)
-    measured = {"lost_transitions": 0, "worker_restarts": 2}
+    measured = {"worker_restarts": 2, "counters": {}}
     summary = run_folder.summary(tmp_path, CONFIG, "lcm", measured)
     assert tuple(summary)[: len(run_folder.SUMMARY_KEYS)] == run_folder.SUMMARY_KEYS
     known = {key: value for key, value in summary.items() if value is not None}
@@ -36,8 +36,8 @@ def test_the_summary_merges_both_halves_and_what_was_measured(tmp_path):
         "contact_share": 0.5,
         "interactions": 400,
         "success_rate": 0.25,
-        "lost_transitions": 3,  # the learner knows better than the display
-        "worker_restarts": 2,
+        "worker_restarts": 3,  # the learner knows better than the display
+        "counters": {},
         "epsilon": 0.1,
         "replay_gap_counts": replay_gaps.counts([0.1]),
     }
@@ -50,9 +50,8 @@ def test_gaps_are_counted_in_bins_of_the_same_ratio():
 
 def test_the_summary_of_a_run_without_learner_has_nulls_in_its_place(tmp_path):
     run_folder.write_json(tmp_path / "generation.json", {"transitions": 100})
-    summary = run_folder.summary(tmp_path, CONFIG, "in_process", {"lost_transitions": 0})
+    summary = run_folder.summary(tmp_path, CONFIG, "in_process", {})
     assert summary["success_rate"] is None and summary["train_wall_s"] is None
-    assert summary["lost_transitions"] == 0
 
 
 def test_the_summary_has_the_keys_that_are_promised():
@@ -62,7 +61,7 @@ def test_the_summary_has_the_keys_that_are_promised():
     iterations_median, iterations_p90, replay_gap_median, replay_gap_p90, reverse_cpu_s,
     replay_cpu_s, generate_cpu_s, generate_wall_s, train_cpu_s, train_wall_s, interactions,
     online_successes, success_rate, episode_length_mean, episode_return_mean, q_rank_correlation,
-    q_error, q_spread, lost_transitions"""
+    q_error, q_spread"""
     assert set(re.findall(r"\w+", contract)) == set(run_folder.SUMMARY_KEYS)
 
 

@@ -100,7 +100,7 @@ def test_logits_are_not_written_down_as_values(tmp_path: Path, rows: Rows) -> No
     one = training(folder)
     source = FileSource(folder / "transitions.npz", one.task, one.data)
     assert one.run(source, lambda: False, record=False)
-    one.finish(lost=0)
+    one.finish()
     assert not {name for name in one.log.rows[-1] if name.startswith("q_")}
     written = json.loads((folder / "training.json").read_text())
     assert not {name for name in written if name.startswith("q_")}

@@ -35,7 +35,7 @@ def test_no_environment_is_stepped_and_rounds_follow_the_schedule(
     one = training(folder)
     source = FileSource(folder / "transitions.npz", one.task, one.data)
     assert one.run(source, lambda: False, record=False)
-    one.finish(lost=0)
+    one.finish()
     columns = [(r["interactions"], r["gradient_steps"], r["pushes"]) for r in one.log.rows]
     assert columns == [(80, 40, 0), (160, 80, 0), (240, 120, 0)]
     assert "epsilon" not in one.log.rows[0]

@@ -78,7 +78,6 @@ def test_the_result_is_that_of_a_search_from_each_final_start(tmp_path: Path) ->
         "episode_length_mean": np.where(success, 1, config.task.horizon).mean(),
         "episode_return_mean": success.mean(),
         "offline_transitions": 0,
-        "lost_transitions": 0,
         "learning_pushes": sum(pushes),
         "planned_starts": 8,
     }
@@ -97,7 +96,7 @@ def test_what_it_took_is_written_down(tmp_path: Path, monkeypatch: pytest.Monkey
     )
     one = planner(folder)
     assert one.run(NoSource(), lambda: False, record=False)
-    one.finish(lost=0)
+    one.finish()
     with (folder / "progress.csv").open() as file:
         (row,) = csv.DictReader(file)
     assert (row["interactions"], row["pushes"], row["success_rate"]) == ("0", "360", "0")

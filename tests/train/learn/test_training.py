@@ -30,7 +30,7 @@ def test_a_run_leaves_its_files(tmp_path: Path, rows: Rows) -> None:
     assert set(table[0]) == {*COLUMNS, checked_table.COLUMN}
     assert all(table[-1][name] != "" for name in COLUMNS)
     result = json.loads((folder / "training.json").read_text())
-    assert result["interactions"] == 240 and result["lost_transitions"] == 0
+    assert result["interactions"] == 240
     assert {"success_rate", "episode_length_mean", "episode_return_mean"} <= set(result)
     assert result["train_wall_s"] > 0 and result["train_cpu_s"] > 0
     assert [row["pushes"] for row in table] == ["80", "160", "240"]
@@ -48,7 +48,7 @@ def test_the_model_file_holds_the_policy(tmp_path: Path, rows: Rows) -> None:
     one = training(folder)
     source = FileSource(folder / "transitions.npz", one.task, one.data)
     assert one.run(source, lambda: False, record=False)
-    one.finish(lost=0)
+    one.finish()
     values = policy_file.read(folder / "model.pt", one.task)
     seen = one.data.record.transitions().observation
     np.testing.assert_array_equal(values(seen), one.model.values(seen))
@@ -273,7 +273,7 @@ def test_the_result_is_measured_on_starts_that_did_not_stop_training(
     source = FileSource(one.folder / "transitions.npz", one.task, one.data)
     assert one.run(source, lambda: False, record=False)
     assert one.interactions == 20 and one.log.rows[-1]["success_rate"] == 1.0
-    one.finish(lost=0)
+    one.finish()
     assert json.loads((one.folder / "training.json").read_text())["success_rate"] == 0.0
 
 

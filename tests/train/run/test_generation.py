@@ -49,7 +49,7 @@ def test_the_report_of_the_search_itself_has_every_figure_of_the_summary(tmp_pat
     _, _, report = generated()
     run_folder.write_json(tmp_path / "generation.json", report)
     config = _core.Config.from_file(FILE)
-    summary = run_folder.summary(tmp_path, config, "lcm", {"lost_transitions": 0})
+    summary = run_folder.summary(tmp_path, config, "lcm", {})
     of_the_learner = {"train_wall_s", "interactions", "online_successes", "success_rate"}
     of_the_learner |= {"episode_length_mean", "episode_return_mean", "train_cpu_s"}
     of_the_learner |= {"q_rank_correlation", "q_error", "q_spread"}

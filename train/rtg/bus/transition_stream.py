@@ -83,11 +83,6 @@ class TransitionStream:
         return self._cursor.cursor
 
     @property
-    def lost(self) -> int:
-        """Number of rows that exist but have not been received; 0 once the stream is complete."""
-        return self._cursor.count - self._cursor.cursor
-
-    @property
     def complete(self) -> bool:
         """True if the number of rows is final and the sink has received every row."""
         return self._cursor.complete

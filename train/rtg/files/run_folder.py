@@ -54,7 +54,6 @@ SUMMARY_KEYS = (
     "q_rank_correlation",
     "q_error",
     "q_spread",
-    "lost_transitions",
 )
 # Keys of generation.json that summary.json leaves out: the data of pictures, which are too long,
 # and what it has among "defects".

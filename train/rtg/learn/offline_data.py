@@ -37,10 +37,6 @@ class Source(Protocol):
     def complete(self) -> bool:
         """True if all rows have been passed on."""
 
-    @property
-    def lost(self) -> int:
-        """Number of rows that are known to exist but have not been passed on."""
-
 
 def read_rows(path: Path, task: _core.Task) -> Rows:
     """Reads the rows of a transition file. Raises dataset.DatasetError."""
@@ -130,7 +126,6 @@ class OfflineData:
 class NoSource:
     """An empty source, for a learner without offline data."""
 
-    lost = 0
     complete = True
 
     def poll(self, timeout: float) -> int:
@@ -143,8 +138,6 @@ class NoSource:
 
 class FileSource:
     """A source that passes all transitions of a file to `data` at the first poll."""
-
-    lost = 0
 
     def __init__(self, path: Path, task: _core.Task, data: OfflineData) -> None:
         self._rows: Rows | None = read_rows(path, task)

@@ -96,7 +96,7 @@ class Planning:
         """True if a search from each start has ended, with or without a plan."""
         return len(self.plans) == len(self.starts)
 
-    def finish(self, lost: int) -> None:
+    def finish(self) -> None:
         """Writes progress.csv with one row, the best plan and training.json."""
         final = evaluate_plans(self.task, self.plans, self.discount)
         wall, cpu = sum(one.wall_s for one in self.plans), sum(one.cpu_s for one in self.plans)
@@ -112,7 +112,6 @@ class Planning:
         figures |= {
             "train_wall_s": round(wall, 3),
             "train_cpu_s": round(cpu, 3),
-            "lost_transitions": lost,
             "learning_pushes": pushes,
             "planned_starts": len(self.plans),
         }

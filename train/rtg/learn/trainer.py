@@ -102,7 +102,7 @@ def _learn(training: Training | Planning, args: argparse.Namespace, interrupts: 
         try:
             if not training.run(source, interrupts.requested, record=not args.no_stream):
                 return 128 + interrupts.number
-            training.finish(source.lost)
+            training.finish()
         finally:
             if training.log.sinks:
                 training.log.sinks.close()

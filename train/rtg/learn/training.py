@@ -279,15 +279,14 @@ class Training:
             f"legal: {self._checkpoint.parent} complete, or removed, to learn anew"
         )
 
-    def finish(self, lost: int) -> None:
+    def finish(self) -> None:
         """Writes the model, the best final episode and training.json.
 
         The final evaluation has starts of its own. Those of earlier evaluations would be biased: an
-        evaluation with chance success may have stopped training. `lost`: number of lost
-        transitions.
+        evaluation with chance success may have stopped training.
         """
         final = self._evaluate(held_out_starts(self.config, FINAL_SEED))
         weights = self.model.mean.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, self.settings, weights)
-        self.log.write_result(final, training_result.figures(self, final, lost))
+        self.log.write_result(final, training_result.figures(self, final))
         self.log.display(self._display_state(), force=True)

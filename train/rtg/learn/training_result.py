@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 _VALUE_CHECK_COLUMNS = ("q_rank_correlation", "q_error", "q_spread")  # of ValueCheck.summary()
 
 
-def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
-    """Returns the content of training.json. `lost`: number of lost transitions."""
+def figures(run: Training, final: Evaluation) -> dict[str, Any]:
+    """Returns the content of training.json."""
     return {
         "interactions": run.interactions,
         "gradient_steps": run.model.gradient_steps,
@@ -24,7 +24,6 @@ def figures(run: Training, final: Evaluation, lost: int) -> dict[str, Any]:
         **{f"train_{name}": round(spent, 3) for name, spent in run.clock.seconds().items()},
         "learning_stages": run.model.stages.seconds(),
         "offline_transitions": run.data.count,
-        "lost_transitions": lost,
         "learning_pushes": run.pushes,
         **run.device_info,
         **_counts(run),

@@ -68,7 +68,6 @@ class GraphRun:
         if status and not fell_short:
             raise self._error(graph, status)
         return {
-            "lost_transitions": 0,
             "worker_restarts": self._restarts,
             "counters": self._watch.counters(),
             "defects": defects,

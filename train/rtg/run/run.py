@@ -78,7 +78,7 @@ def _generate_and_train(plan: RunPlan, shown: Display) -> dict[str, Any]:
         if plan.resume and run_folder.checkpoint_file(plan.folder).exists():
             shown.note(_what_is_left(plan))
         train_run.run(plan, shown)
-    return {"lost_transitions": 0, "defects": graph_run.generation_defects(plan)}
+    return {"defects": graph_run.generation_defects(plan)}
 
 
 def _what_is_left(plan: RunPlan) -> str:
