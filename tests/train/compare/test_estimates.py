@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from rtg.compare.estimates import (
+    band,
     carried_forward,
     first_reach,
     improvement_interval,
@@ -10,6 +11,7 @@ from rtg.compare.estimates import (
     interval,
     mean_std,
     probability_of_improvement,
+    profile,
 )
 
 NAN = float("nan")
@@ -86,3 +88,15 @@ def test_a_course_that_ends_early_keeps_its_last_value():
     assert np.isnan(found[:2]).all()
     assert found[2:].tolist() == [0.5, 0.5, 0.9, 0.9]
     assert np.isnan(carried_forward(at, np.full(3, NAN), at)).all()
+
+
+def test_a_profile_is_the_share_of_runs_at_each_level_tasks_alike():
+    table = scores([0.2, 0.8], [0.5])
+    assert profile(table, np.array([0.1, 0.5, 0.8, 0.9])).tolist() == [1.0, 0.75, 0.25, 0.0]
+
+
+def test_the_band_of_a_profile_holds_at_each_level():
+    levels = np.array([0.5, 0.9])
+    low, high = band(lambda drawn: profile(drawn, levels), scores([0.6, 0.6, 1.0]))
+    assert (low[0], high[0]) == (1.0, 1.0) and low[1] == 0.0 and high[1] == 1.0
+    assert band(lambda drawn: profile(drawn, levels), scores([0.6])) is None

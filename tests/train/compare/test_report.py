@@ -163,6 +163,7 @@ def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):
         *(f"{name}_gathering.png" for name in expected),
         "film_gathering.gif",
         "replay_gap.png",
+        "profiles.png",
     }
     assert str(folder) not in page
 

@@ -46,8 +46,16 @@ def _are_single(scores: Scores) -> bool:
     return all(len(task) == 1 for task in scores)
 
 
-def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float, float] | None:
-    """Returns the 95 % percentile interval of `estimate` by stratified bootstrap.
+def profile(scores: Scores, levels: Floats) -> Floats:
+    """Returns the performance profile: the share of runs with a score of each level or more.
+
+    It is the mean over the tasks. [levels]
+    """
+    return np.mean([(task[:, None] >= levels).mean(axis=0) for task in scores], axis=0)
+
+
+def band(estimate: Callable[[Scores], Floats], scores: Scores) -> tuple[Floats, Floats] | None:
+    """Returns the 95 % percentile intervals of the values of `estimate` by stratified bootstrap.
 
     Resamples the seeds of each task. Returns None if every task has a single seed.
     """
@@ -58,8 +66,14 @@ def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float
         estimate([task[rng.integers(len(task), size=len(task))] for task in scores])
         for _ in range(RESAMPLES)
     ]
-    low, high = np.quantile(drawn, [(1 - _LEVEL) / 2, (1 + _LEVEL) / 2])
-    return float(low), float(high)
+    low, high = np.quantile(drawn, [(1 - _LEVEL) / 2, (1 + _LEVEL) / 2], axis=0)
+    return low, high
+
+
+def interval(estimate: Callable[[Scores], float], scores: Scores) -> tuple[float, float] | None:
+    """Returns the band() of a single value."""
+    found = band(lambda drawn: np.array(estimate(drawn)), scores)
+    return None if found is None else (float(found[0]), float(found[1]))
 
 
 def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] | None:

@@ -69,6 +69,7 @@ def evaluate(run: Path, episodes: int) -> str:
             {
                 "group": row.variant.group,
                 "label": row.variant.label,
+                "amount": row.variant.amount,
                 "success": row.success,
                 "episode_length": row.length,
                 "reason": row.reason,

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rtg import paths
+from rtg.compare import report_robustness as robustness
 from rtg.compare import report_sources as sources
 from rtg.compare import report_tables as tables
 from rtg.compare.cells import Grid
@@ -39,9 +40,10 @@ IQM: mean of the middle half of all final successes (of fewer than four, of all)
 interval by stratified bootstrap (seeds drawn within a task, {RESAMPLES:,} resamples), over the
 tasks that more than one method was run on, if any. Last column: the probability that a run of the
 method does better than one of `{REFERENCE}` on the same task, mean over the tasks, equal ones
-counted half. Single seeds have no interval, and of few it is too narrow. Methods with fewer tasks
-are not comparable with those with more, nor is `{RANDOMISED}` with any: its starts, also those it
-is measured from, lie all over a wider region."""
+counted half. Performance profile: the share of a method's runs whose final success is at least
+that on the axis, mean over the tasks. Single seeds have no interval, and of few it is too narrow.
+Methods with fewer tasks are not comparable with those with more, nor is `{RANDOMISED}` with any:
+its starts, also those it is measured from, lie all over a wider region."""
 REMARKS = "remarks.md"  # beside grid.json
 _QUICK = (
     "**Small budgets (`--quick`): these figures show that everything works and are no results.**"
@@ -171,6 +173,17 @@ def _task_section(folder: Path, comparison: Comparison, task: str) -> list[str]:
     ]
 
 
+def _robustness_section(folder: Path, comparison: Comparison) -> list[str]:
+    """Returns the section on evaluations elsewhere; [] if there are none."""
+    parts = []
+    for task in comparison.tasks:
+        if robustness.is_evaluated(comparison, task):
+            parts.append(robustness.robustness_table(comparison, task))
+            name = f"robustness_{task}.png"
+            parts += _picture(folder, name, f"Success on {task} where it was not trained")
+    return ["## Where it was not trained", robustness.NOTE, *parts] if parts else []
+
+
 def read_remarks(runs: Path) -> str:
     """Returns the text that people wrote in remarks.md; "" if there is no file.
 
@@ -198,6 +211,7 @@ def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> st
         "## All tasks together",
         tables.pooled_table(comparison),
         _POOLED,
+        *_picture(folder, "profiles.png", "Performance profiles"),
         "## Where reverse simulation is the better source",
         sources.better_source(comparison),
         sources.NOTE,
@@ -208,6 +222,7 @@ def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> st
         tables.data_table(comparison),
         _DATA,
         *_picture(folder, "replay_gap.png", "Histogram of the replay gap"),
+        *_robustness_section(folder, comparison),
         *(["## Remarks", remarks] if remarks else []),
         *_trouble_section(grid, comparison.results),
     ]

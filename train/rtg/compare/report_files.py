@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rtg import _core
-from rtg.compare import report_plots
+from rtg.compare import report_plots, report_robustness
 from rtg.compare.collection import check_sources, collect
 from rtg.compare.methods import REFERENCE
 from rtg.compare.report import report
+from rtg.compare.report_tables import pooled_scores
 from rtg.compare.run_results import (
     COSTS,
     CURVE_COLUMNS,
@@ -30,8 +31,13 @@ from rtg.pictures import episode_pictures, plots
 from rtg.run import effective_config
 from rtg.run.results import episode_title
 
-_TASK_PICTURES = ("costs_*.png", "curves_*.png", "sweep_*.png", "strip_*.png", "film_*.gif")
-_PICTURES = (*_TASK_PICTURES, "replay_gap.png")
+_OF_A_TASK = ("costs", "curves", "sweep", "strip", "robustness")
+_PICTURES = (
+    *(f"{name}_*.png" for name in _OF_A_TASK),
+    "film_*.gif",
+    "replay_gap.png",
+    "profiles.png",
+)
 
 
 def write_report(runs: Path, out: Path, suffix: str = "png") -> Path:
@@ -81,11 +87,17 @@ def _draw(
 
 def _draw_plots(out: Path, comparison: Comparison) -> None:
     gaps = {}
+    scores = pooled_scores(comparison)
+    of_methods = {label: found for label, found in scores.items() if "@" not in label}
+    if len(of_methods) > 1:
+        report_plots.profiles(out / "profiles.png", of_methods)
     for task in comparison.tasks:
         done = [run for run in comparison.all_done() if run.cell.task == task]
         if report_plots.curve_labels(comparison, task):
             report_plots.costs(out / f"costs_{task}.png", comparison, task)
             report_plots.curves(out / f"curves_{task}.png", comparison, task)
+        if report_robustness.is_evaluated(comparison, task):
+            report_robustness.robustness(out / f"robustness_{task}.png", comparison, task)
         if any(run.cell.settings for run in done):
             report_plots.sweep(out / f"sweep_{task}.png", comparison, task)
         replayed = _runs_of_reference([run for run in done if "replay_gap_counts" in run.summary])

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
-from rtg.compare.estimates import carried_forward
+from rtg.compare.estimates import band, carried_forward, profile
 from rtg.compare.methods import METHODS
 from rtg.compare.report_tables import mean_success
 from rtg.compare.run_results import THRESHOLD, Comparison, RunResult
@@ -42,6 +42,7 @@ _PALETTE = {
     "bc_rtg": ("#00707a", "-."),
     "planner": ("#a50026", "-."),
 }
+_LEVELS = np.linspace(0.01, 1.0, 100)  # of performance profiles
 _LINE_STYLES = ("-", "--", "-.", ":")
 _COSTS = {
     "interactions": "interactions (dash-dotted: rounds of learning)",
@@ -60,7 +61,7 @@ _THRESHOLD_COLOUR = "#8a8d93"
 _RIGHT_ALIGNED: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8}
 
 
-def _styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
+def line_styles(labels: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Returns colour and line style of each label (method with swept settings).
 
     Each method has its colour. If a method has several labels, all labels get shades instead.
@@ -94,7 +95,7 @@ def _aligned_curves(runs: Sequence[RunResult], column: str) -> tuple[Floats, Flo
     return grid, np.array(values)
 
 
-def _draw_curve(
+def draw_curve(
     axis: Axes,
     curve: tuple[Floats, Floats],
     is_share: bool,
@@ -154,13 +155,13 @@ def _wrapped(words: str, width: int) -> str:
     )
 
 
-def _add_legend(figure: Figure, runs_by_label: RunsByLabel, title: str, columns: int = 4) -> None:
+def add_legend(figure: Figure, runs_by_label: RunsByLabel, title: str, columns: int = 4) -> None:
     """Adds the title above the panels and the legend below them.
 
     The legend shows the mean final success and the number of seeds of each label, in `columns` or
     as many as fit.
     """
-    styles = _styles(list(runs_by_label))
+    styles = line_styles(list(runs_by_label))
     handles = [
         plt.Line2D([], [], color=styles[label][0], ls=styles[label][1], lw=2)
         for label in runs_by_label
@@ -209,7 +210,7 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
         for name, runs in _runs_with_curves(comparison, task).items()
         if runs[0].interacts
     }
-    styles = _styles(list(runs_by_label))
+    styles = line_styles(list(runs_by_label))
     with plots.style():
         figure, axes = plt.subplots(2, 2, figsize=(9.6, 6.8), layout="constrained", sharex=True)
         for axis, (name, column) in zip(axes.flat, _PANELS, strict=True):
@@ -217,7 +218,7 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
                 grid, values = _aligned_curves(runs, column)
                 end = mean_success(runs) if column == "success_rate" else None
                 curve = grid / 1000.0, values
-                _draw_curve(axis, curve, column in _SHARE_COLUMNS, styles[label], end)
+                draw_curve(axis, curve, column in _SHARE_COLUMNS, styles[label], end)
             axis.set_title(name)
             if column in _SHARE_COLUMNS:
                 axis.set_ylim(-0.03, 1.03)
@@ -231,7 +232,7 @@ def curves(path: Path, comparison: Comparison, task: str) -> None:
             f"{task}: mean ± standard deviation of the seeds; dots of greedy success: final one, "
             "from other starts"
         )
-        _add_legend(figure, runs_by_label, title)
+        add_legend(figure, runs_by_label, title)
         plots.save(figure, path)
 
 
@@ -252,7 +253,7 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
     Success and cost are means over the seeds after the same number of interactions.
     """
     runs_by_label = _runs_with_curves(comparison, task)
-    styles = _styles(list(runs_by_label))
+    styles = line_styles(list(runs_by_label))
     with plots.style():
         figure, axes = plt.subplots(1, 3, figsize=(12.6, 5.0), layout="constrained", sharey=True)
         for axis, (cost, name) in zip(axes, _COSTS.items(), strict=True):
@@ -261,7 +262,7 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
                 values = _aligned_curves(runs, "success_rate")[1]
                 shown = mean_cost > 0.0
                 curve = mean_cost[shown], values[:, shown]
-                _draw_curve(axis, curve, True, styles[label], mean_success(runs))
+                draw_curve(axis, curve, True, styles[label], mean_success(runs))
             axis.axhline(THRESHOLD, color=_THRESHOLD_COLOUR, lw=0.8, zorder=0)
             axis.set(xlabel=name, ylim=(-0.03, 1.03))
             scale_cost(axis)
@@ -270,7 +271,7 @@ def costs(path: Path, comparison: Comparison, task: str) -> None:
             f"{task}: success against the mean cost, mean ± standard deviation of the seeds; dots: "
             "final success, from other starts"
         )
-        _add_legend(figure, runs_by_label, title, columns=5)
+        add_legend(figure, runs_by_label, title, columns=5)
         plots.save(figure, path)
 
 
@@ -294,6 +295,33 @@ def replay_gaps(path: Path, of_tasks: Mapping[str, Sequence[RunResult]]) -> None
             highest = max(highest, axis.get_xlim()[1])
         axes[-1, 0].set_xlim(right=highest)
         axes[-1, 0].set_xlabel(plots.GAP_AXIS)
+        plots.save(figure, path)
+
+
+def profiles(path: Path, scores_by_label: Mapping[str, Mapping[str, Floats]]) -> None:
+    """Plots the performance profiles of estimates.profile(), with their band over the seeds.
+
+    `scores_by_label`: by label and task, see report_tables.pooled_scores().
+    """
+    style_of = line_styles(list(scores_by_label))
+    with plots.style():
+        figure, axis = plt.subplots(figsize=(7.2, 4.8), layout="constrained")
+        for label, by_task in scores_by_label.items():
+            scores = list(by_task.values())
+            colour, line_style = style_of[label]
+            axis.plot(_LEVELS, profile(scores, _LEVELS), color=colour, ls=line_style, lw=2.0)
+            found = band(lambda drawn: profile(drawn, _LEVELS), scores)
+            if found is not None:
+                axis.fill_between(_LEVELS, *found, color=colour, alpha=0.18, lw=0)
+        axis.set(xlim=(0.0, 1.0), ylim=(-0.03, 1.03))
+        axis.set(xlabel="final success of at least", ylabel="share of the runs")
+        handles = [
+            plt.Line2D([], [], color=style_of[label][0], ls=style_of[label][1], lw=2)
+            for label in scores_by_label
+        ]
+        shared, names = split_names(list(scores_by_label))
+        figure.legend(handles, names, loc="outside right upper", title=shared, frameon=False)
+        plots.headline(figure, "performance profiles, 95 % intervals of the seeds")
         plots.save(figure, path)
 
 

@@ -160,6 +160,13 @@ def is_randomised(label: str) -> bool:
     return label.split("@")[0] == RANDOMISED
 
 
+def pooled_scores(comparison: Comparison) -> dict[str, dict[str, Floats]]:
+    """Returns the final successes by label and task, [seeds], over the _shared_tasks()."""
+    tasks = _shared_tasks(comparison)
+    found = {label: _scores(comparison, tasks, label) for label in comparison.labels}
+    return {label: scores for label, scores in found.items() if scores}
+
+
 def pooled_table(comparison: Comparison) -> str:
     """Returns the table of statistics over all seeds of the _shared_tasks()."""
     head = [
@@ -169,12 +176,9 @@ def pooled_table(comparison: Comparison) -> str:
         "IQM of the success",
         f"probability of a better run than `{REFERENCE}`",
     ]
-    tasks = _shared_tasks(comparison)
-    reference, rows = _scores(comparison, tasks, REFERENCE), []
-    for label in comparison.labels:
-        scores = _scores(comparison, tasks, label)
-        if not scores:
-            continue
+    of_labels = pooled_scores(comparison)
+    reference, rows = of_labels.get(REFERENCE, {}), []
+    for label, scores in of_labels.items():
         values = list(scores.values())
         iqm = estimates.interquartile_mean
         comparable = label != REFERENCE and not is_randomised(label)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ COSTS = ("interactions", "pushes", "cpu_s")  # [1], [1], [s]; columns of a curve
 THRESHOLD = 0.95  # greedy success that solves a task; the costs "..._to_95" are those to reach it
 CURVE_COLUMNS = ("success_rate", "rollout_success", "episode_length_mean", "episode_return_mean")
 
+EVALUATION = "evaluation.json"  # what `./run.sh evaluate` found, in the folder of a run
 _TEXTS = ("task", "method", "mode")  # of a summary; its other members are numbers
 _ITERATIONS = ("pushing_iterations_median", "pushing_iterations_p90")
 
@@ -47,6 +48,7 @@ class RunResult:
     # Columns of progress.csv [N]; `pushes` and `cpu_s` include those of the generation.
     curve: dict[str, Floats]
     train: _core.TrainConfig | None  # None unless the run is done
+    evaluation: Sequence[Mapping[str, Any]] = ()  # the rows of evaluation.json, if there is one
 
     @property
     def done(self) -> bool:
@@ -162,7 +164,8 @@ def _result(run: Path, cell: Cell, failures: Container[str]) -> RunResult:
             curve = _curve(run / "progress.csv", summary)
         made_with = read_json(run / versions.FILE)
         train = effective_config.load_recorded(run / "config.yaml").train
-        return RunResult(cell, run, "done", summary, made_with, curve, train)
+        tried = _evaluation(run / EVALUATION)
+        return RunResult(cell, run, "done", summary, made_with, curve, train, tried)
     state = "failed" if cell.name in failures else _state_without_result(run)
     return RunResult(cell, run, state, {}, {}, {}, None)
 
@@ -173,6 +176,18 @@ def _check_figures(summary: Mapping[str, Any]) -> None:
         value = summary.get(name)
         if name not in _TEXTS and not isinstance(value, int | float | None):
             raise TypeError(f"{name} is {value!r}")
+
+
+def _evaluation(file: Path) -> list[dict[str, Any]]:
+    """Reads the rows that `./run.sh evaluate` wrote; [] without the file.
+
+    Raises UserError if the file is damaged.
+    """
+    if not file.is_file():
+        return []
+    with fields_of(file):
+        names = ("group", "label", "amount", "success")
+        return [{name: row[name] for name in names} for row in read_json(file)["rows"]]
 
 
 def _state_without_result(run: Path) -> str:

@@ -40,6 +40,7 @@ class Variant(NamedTuple):
     label: str  # by how much
     settings: tuple[str, ...] = ()
     noise: float = 0.0  # standard deviation of the poses that the policy sees
+    amount: float | None = None  # the number in `label`, where groups have one: [m], [rad], factor
 
 
 class Row(NamedTuple):
@@ -147,10 +148,11 @@ def _anywhere(task: dict[str, Any]) -> Iterator[Variant]:
 def _start_variants(task: dict[str, Any], unit: float) -> Iterator[Variant]:
     yield from _anywhere(task)
     for by in _MOVED:
-        yield Variant("objects moved", f"by up to {by * unit:.3g} m", _moved(task, by * unit))
+        moved, settings = by * unit, _moved(task, by * unit)
+        yield Variant("objects moved", f"by up to {moved:.3g} m", settings, amount=moved)
     for by in _TURNED:
         if settings := _turned(task, by, _MOVED[0] * unit):
-            yield Variant("objects turned", f"by up to {by} rad", settings)
+            yield Variant("objects turned", f"by up to {by} rad", settings, amount=by)
 
 
 def variants(config: _core.Config) -> list[Variant]:
@@ -158,7 +160,10 @@ def variants(config: _core.Config) -> list[Variant]:
     task = json.loads(config.json)["task"]
     unit = 1.0 / config.task.metre
     found = [Variant("as trained", ""), *_start_variants(task, unit)]
-    found += [Variant("noise of poses", f"{by * unit:.3g} m, {by} rad", noise=by) for by in _NOISE]
+    found += [
+        Variant("noise of poses", f"{by * unit:.3g} m, {by} rad", noise=by, amount=by * unit)
+        for by in _NOISE
+    ]
     for factor in _FACTORS:
         for group, key in (("friction", "friction"), ("mass of objects", "density")):
             settings = tuple(
@@ -166,10 +171,11 @@ def variants(config: _core.Config) -> list[Variant]:
                 for k, body in enumerate(task["bodies"])
                 if key == "friction" or k > 0
             )
-            found.append(Variant(group, f"x {factor}", settings))
+            found.append(Variant(group, f"x {factor}", settings, amount=factor))
     for factor in _STRIDES:
         strides = [stride * factor for stride in task["push"]["strides"]]
-        found.append(Variant("stride", f"x {factor}", (f"task.push.strides={strides}",)))
+        changed = (f"task.push.strides={strides}",)
+        found.append(Variant("stride", f"x {factor}", changed, amount=factor))
     for damping in _COASTING:
         settings = ("physics.inertia=true", f"physics.damping={damping}")
         found.append(Variant("coasting", f"damping {damping}", settings))

@@ -1,0 +1,101 @@
+"""The part of a report on policies where they were not trained, from `./run.sh evaluate`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from rtg.compare import report_plots
+from rtg.compare.report_tables import NO_VALUE, spread, table
+from rtg.compare.run_results import Comparison, RunResult
+from rtg.pictures import plots
+
+NOTE = """\
+Success of the final policies (`./run.sh evaluate`), means ± standard deviations over the seeds:
+from other starts, with Gaussian noise on the poses that the policy sees, with friction of all
+bodies, masses of the objects or strides multiplied, with bodies that coast after a push, in other
+simulators. Of starts that would lie outside the arena or have bodies overlap others are drawn."""
+# Groups of variants that the picture shows, with the name of their axis, and the amount as trained.
+_PANELS = (
+    ("objects moved", "objects moved by up to [m]", None),
+    ("objects turned", "objects turned by up to [rad]", 0.0),
+    ("noise of poses", "noise of poses, standard deviation [m]", 0.0),
+    ("friction", "friction of all bodies, factor", 1.0),
+    ("mass of objects", "mass of objects, factor", 1.0),
+    ("stride", "stride, factor", 1.0),
+)
+
+Rows = Sequence[Mapping[str, Any]]  # of evaluation.json
+
+
+def _evaluated(comparison: Comparison, task: str) -> dict[str, list[RunResult]]:
+    """Returns the runs that have been evaluated, by label."""
+    found = {
+        label: [run for run in comparison.done(task, label) if run.evaluation]
+        for label in comparison.labels
+    }
+    return {label: runs for label, runs in found.items() if runs}
+
+
+def is_evaluated(comparison: Comparison, task: str) -> bool:
+    return bool(_evaluated(comparison, task))
+
+
+def _successes(runs: Sequence[RunResult], group: str, label: str) -> list[float | None]:
+    """Returns the success of each run under a variant; None where its settings are refused."""
+    return [
+        row["success"]
+        for run in runs
+        for row in run.evaluation
+        if (row["group"], row["label"]) == (group, label)
+    ]
+
+
+def robustness_table(comparison: Comparison, task: str) -> str:
+    """Returns a table with a row for each variant and a column for each label."""
+    runs_by_label = _evaluated(comparison, task)
+    variants = dict.fromkeys(
+        (row["group"], row["label"])
+        for runs in runs_by_label.values()
+        for run in runs
+        for row in run.evaluation
+    )
+    rows = [
+        [*variant, *(spread(_successes(runs, *variant), ".2f") for runs in runs_by_label.values())]
+        for variant in variants
+    ]
+    heads = [f"`{label}` ({len(runs)})" for label, runs in runs_by_label.items()]
+    shown = [row for row in rows if any(cell != NO_VALUE for cell in row[2:])]
+    return table([task, "", *heads], shown, left=2)
+
+
+def _line(rows: Rows, group: str, trained: float | None) -> dict[float, float]:
+    """Returns the success of one run by the amount of a group of variants."""
+    of_group = {row["amount"]: row["success"] for row in rows if row["group"] == group}
+    as_trained = {} if trained is None else {trained: rows[0]["success"]}
+    known = {by: success for by, success in of_group.items() if success is not None}
+    return dict(sorted({**as_trained, **known}.items()))
+
+
+def robustness(path: Path, comparison: Comparison, task: str) -> None:
+    """Plots the success over the amount of each group of variants, a line per label."""
+    runs_by_label = _evaluated(comparison, task)
+    styles = report_plots.line_styles(list(runs_by_label))
+    with plots.style():
+        figure, axes = plt.subplots(2, 3, figsize=(9.6, 6.2), layout="constrained", sharey=True)
+        for axis, (group, name, trained) in zip(axes.flat, _PANELS, strict=True):
+            for label, runs in runs_by_label.items():
+                lines = [_line(run.evaluation, group, trained) for run in runs]
+                grid = sorted(set.intersection(*map(set, lines)))
+                values = np.array([[line[by] for by in grid] for line in lines])
+                report_plots.draw_curve(axis, (np.array(grid), values), True, styles[label])
+            axis.set(xlabel=name, ylim=(-0.03, 1.03))
+        for axis in axes[:, 0]:
+            axis.set_ylabel("success")
+        title = f"{task}: success where it was not trained, mean ± standard deviation of the seeds"
+        report_plots.add_legend(figure, runs_by_label, title)
+        plots.save(figure, path)
