@@ -78,8 +78,10 @@ def test_the_starts_of_a_reverse_solve_lead_to_the_given_state(solved) -> None:
     assert rtg.forward.Box2D(task).push(starts, actions)[1].all()
 
 
-@pytest.mark.parametrize("engine", [rtg.forward.Newton, rtg.forward.Box2D])
+@pytest.mark.parametrize("engine", [rtg.forward.Newton, rtg.forward.Box2D, rtg.forward.MuJoCo])
 def test_a_way_of_the_robot_is_in_metres(engine: type) -> None:
+    if engine is rtg.forward.MuJoCo:
+        pytest.importorskip("mujoco", reason="the extra `mujoco` is not installed")
     task = rtg.load_task("push_t")
     start = task.start()
     start[0, :2] = (-4.0, -4.0)  # nothing is near

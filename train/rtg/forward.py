@@ -40,8 +40,15 @@ class Forward:
 
         A way has any direction and any length above 0; the arena cuts it off.
         """
-        metres = numbers("ways", ways, (None, 2))
-        after, ok = self._core.push_along(self.task.inner(states), metres * self.task.core.metre)
+        metres, inner = numbers("ways", ways, (None, 2)), self.task.inner(states)
+        if len(inner) != len(metres):
+            raise ValueError(
+                f"{len(inner)} states but {len(metres)} ways; legal: one way per state"
+            )
+        lengths = np.linalg.norm(metres, axis=1)
+        for length in lengths[~(np.isfinite(lengths) & (lengths > 0.0))]:
+            raise ValueError(f"a way of length {length}; legal: finite lengths above 0")
+        after, ok = self._core.push_along(inner, metres * self.task.core.metre)
         return self.task.outer(after), ok
 
 

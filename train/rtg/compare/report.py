@@ -51,7 +51,9 @@ _QUICK = (
 _RUNTIME = """\
 CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
 pushes, the share of the solves that converged, iterations of those that moved an object;
-environment steps of the learner per second, evaluations included."""
+environment steps of the learner per second, evaluations included. The paper's Appendix E has
+51.0 ms for a backward action with joints, 39.6 ms without, 1.07 ms for a forward one, on another
+processor."""
 _DATA = f"""\
 **transitions**: stored, in thousands; **tree rows**: of them steps found backwards and kept;
 **branches**: outcomes of other headings in the same states; **headings per state**: distinct ones
