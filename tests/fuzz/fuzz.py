@@ -21,7 +21,7 @@ PROGRAMS = BUILD / "tests" / "fuzz"
 FOUND = BUILD / "found"
 INPUTS, SMOKE_INPUTS = 1_000_000, 5_000
 LONGEST = 64_000  # bytes of an input, a datagram at most
-LIMITS = ("-timeout=120", "-malloc_limit_mb=64", "-rss_limit_mb=2048")
+LIMITS = ("-timeout=300", "-malloc_limit_mb=64", "-rss_limit_mb=2048")
 DONE = re.compile(r"^#(\d+)\s+DONE\s+cov: (\d+) ft: (\d+)", re.MULTILINE)
 WRITTEN = re.compile(r"Test unit written to (\S+)")
 

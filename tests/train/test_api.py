@@ -95,6 +95,8 @@ def test_a_way_of_the_robot_is_in_metres(engine: type) -> None:
     ]:
         with pytest.raises(ValueError, match=message):
             engine(task).push_along(start[None], wrong)
+    with pytest.raises(ValueError, match="2 states but 1 actions; legal: one action per state"):
+        engine(task).push(np.stack([start, start]), [0])
 
 
 def test_a_solution_is_a_trajectory_with_controls_and_forces(solved) -> None:

@@ -241,7 +241,6 @@ void bind_cursor(nb::module_& module) {
           "Returns the next acknowledgement to send at time `now` [s], or None. To be called until "
           "it returns None.")
       .def_prop_ro("cursor", &Cursor::cursor, "Number of the next row in order.")
-      .def_prop_ro("count", &Cursor::count, "Number of rows known to exist.")
       .def_prop_ro("complete", &Cursor::complete,
                    "True if the number of rows is final and every row has been returned.");
 }

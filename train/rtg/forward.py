@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -10,6 +12,13 @@ from rtg.engines import simulator
 from rtg.task import Task
 
 Floats = NDArray[np.float64]
+
+
+def _check_count(states: Floats, name: str, given: NDArray[Any]) -> None:
+    if len(states) != len(given):
+        raise ValueError(
+            f"{len(states)} states but {len(given)} {name}s; legal: one {name} per state"
+        )
 
 
 class Forward:
@@ -31,21 +40,20 @@ class Forward:
         to rest, fly off or stay in each other. Equal arguments give equal bits. Raises ValueError
         as Task.inner() does; bodies that overlap are pushed apart.
         """
-        pushes = indices("action", actions, self.task.actions)
-        after, ok = self._core.push(self.task.inner(states), pushes)
+        pushes, inner = indices("action", actions, self.task.actions), self.task.inner(states)
+        _check_count(inner, "action", pushes)
+        after, ok = self._core.push(inner, pushes)
         return self.task.outer(after), ok
 
     def push_along(self, states: ArrayLike, ways: ArrayLike) -> tuple[Floats, NDArray[np.bool_]]:
         """Like push(), with the way (x, y) [m] of the robot instead of an action. [N, 2]
 
-        A way has any direction and any length above 0; the arena cuts it off.
+        A way has any direction and any finite length above 0; the arena cuts it off. Raises
+        ValueError for another one.
         """
         metres, inner = numbers("ways", ways, (None, 2)), self.task.inner(states)
-        if len(inner) != len(metres):
-            raise ValueError(
-                f"{len(inner)} states but {len(metres)} ways; legal: one way per state"
-            )
-        lengths = np.linalg.norm(metres, axis=1)
+        _check_count(inner, "way", metres)
+        lengths = np.hypot(*metres.T)
         for length in lengths[~(np.isfinite(lengths) & (lengths > 0.0))]:
             raise ValueError(f"a way of length {length}; legal: finite lengths above 0")
         after, ok = self._core.push_along(inner, metres * self.task.core.metre)

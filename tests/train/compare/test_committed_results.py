@@ -22,4 +22,5 @@ def test_a_committed_report_is_that_of_its_runs(folder: Path, tmp_path: Path) ->
     report_files.write_report(folder, tmp_path)
     again, committed = made(tmp_path), made(folder)
     assert sorted(again) == sorted(committed)
-    assert [name for name in again if again[name] != committed[name]] == []
+    changed = [name for name in again if again[name] != committed[name]]
+    assert not changed, f"made anew by ./run.sh plot {folder.relative_to(paths.ROOT)}"

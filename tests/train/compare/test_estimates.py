@@ -13,6 +13,7 @@ from rtg.compare.estimates import (
     probability_of_improvement,
     profile,
 )
+from rtg.compare.report_plots import LEVELS
 
 NAN = float("nan")
 
@@ -93,6 +94,12 @@ def test_a_course_that_ends_early_keeps_its_last_value():
 def test_a_profile_is_the_share_of_runs_at_each_level_tasks_alike():
     table = scores([0.2, 0.8], [0.5])
     assert profile(table, np.array([0.1, 0.5, 0.8, 0.9])).tolist() == [1.0, 0.75, 0.25, 0.0]
+
+
+def test_a_success_counts_at_its_own_level():
+    for successes in range(1, 101):
+        found = profile(scores([successes / 100]), LEVELS)
+        assert found.tolist() == [1.0] * successes + [0.0] * (100 - successes)
 
 
 def test_the_band_of_a_profile_holds_at_each_level():

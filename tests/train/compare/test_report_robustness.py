@@ -1,18 +1,21 @@
 """What a report says of policies where they were not trained."""
 
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from comparison_samples import finished, table_row, write_grid
 from rtg.compare.cells import Cell
 from rtg.compare.report_files import write_report
+from rtg.errors import UserError
 from rtg.files.run_folder import write_json
 
 CELLS = [Cell("gathering", "ddqn_rtg", (), seed) for seed in (1, 2, 3)]
 
 
-def row(group: str, label: str, amount: float | None, success: float | None) -> dict[str, Any]:
+def row(group: Any, label: Any, amount: Any, success: Any) -> dict[str, Any]:
     return {"group": group, "label": label, "amount": amount, "success": success}
 
 
@@ -62,6 +65,40 @@ def test_lines_go_through_what_was_trained_in_the_order_of_the_amounts(
     assert moved.get_xydata().tolist() == [[1.0, 0.75], [2.0, 0.5]]
     assert turned.get_xydata().tolist() == [[0.0, 0.9]]
     assert np.allclose(friction.get_xydata(), [[0.7, 0.8], [1.0, 0.9], [1.3, 0.7]])
+
+
+def test_a_run_without_a_variant_is_told_and_has_no_point(
+    tmp_path: Path, figures: list[Any]
+) -> None:
+    written(tmp_path)
+    few = {"episodes": 100, "rows": [r for r in evaluation(0.8) if r["amount"] != 1.3]}
+    write_json(tmp_path / CELLS[1].name / "evaluation.json", few)
+    page = write_report(tmp_path, tmp_path / "out").read_text()
+    assert "| friction | x 1.3 | 0.80 (1 of 2) |" in section(page)
+    (figure,) = (f for f in figures if f.axes[0].get_xlabel() == "objects moved by up to [m]")
+    assert figure.axes[3].get_lines()[0].get_xdata().tolist() == [0.7, 1.0]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [row("friction", "x 2", 2.0, "0.9"), row("friction", "x 2", [2.0], 0.9), row("", 3, 2.0, 0.9)],
+    ids=["success", "amount", "label"],
+)
+def test_figures_of_another_kind_are_named(tmp_path: Path, wrong: dict[str, Any]) -> None:
+    written(tmp_path)
+    file = tmp_path / CELLS[0].name / "evaluation.json"
+    write_json(file, {"episodes": 100, "rows": [*evaluation(1.0), wrong]})
+    with pytest.raises(UserError, match=re.escape(str(file))):
+        write_report(tmp_path, tmp_path / "out")
+
+
+def test_an_evaluation_of_before_there_were_amounts_has_its_rows(tmp_path: Path) -> None:
+    written(tmp_path)
+    for cell in CELLS[:2]:
+        rows = [{k: v for k, v in r.items() if k != "amount"} for r in evaluation(1.0)]
+        write_json(tmp_path / cell.name / "evaluation.json", {"episodes": 100, "rows": rows})
+    page = write_report(tmp_path, tmp_path / "out").read_text()
+    assert "| friction | x 1.3 | 0.80 ± 0.00 |" in section(page)
 
 
 def test_runs_that_nobody_evaluated_have_no_such_section(tmp_path: Path) -> None:

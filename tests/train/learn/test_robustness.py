@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rtg import _core, paths
+from rtg.compare import report_robustness
 from rtg.errors import UserError
 from rtg.learn import robustness
 from rtg.learn.robustness import Variant, evaluate_variant
@@ -191,9 +192,21 @@ def test_the_command_writes_table_picture_and_json(tmp_path: Path) -> None:
         evaluate(tmp_path, 2)
     text = evaluate(trained(tmp_path), 2)
     rows = json.loads((tmp_path / "evaluation.json").read_text())["rows"]
-    assert len(rows) == len(robustness.variants(CONFIG)) == text.count("\n| ") - 2  # head and rule
+    variants = robustness.variants(CONFIG)
+    assert [row["amount"] for row in rows] == [variant.amount for variant in variants]
+    assert len(rows) == len(variants) == text.count("\n| ") - 2  # head and rule
     assert (tmp_path / "evaluation.md").read_text() == text
     assert (tmp_path / "evaluation.png").stat().st_size > 5_000
+
+
+def test_amounts_are_in_metres_radians_and_factors() -> None:
+    found = [v for v in robustness.variants(CONFIG) if v.amount is not None]
+    assert {v.group for v in found} == {group for group, *_ in report_robustness.PANELS}
+    smaller = _core.Config.from_file(paths.CONFIG / "push_t.yaml")
+    assert smaller.task.metre != 1.0
+    found += [v for v in robustness.variants(smaller) if v.amount is not None]
+    for _, label, _, _, amount in found:
+        assert f"{amount:.3g}" == f"{float(re.findall(r'[0-9.]+', label)[0]):.3g}", label
 
 
 def test_table_json_and_picture_say_why_a_variant_is_not_possible(

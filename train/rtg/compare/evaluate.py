@@ -10,6 +10,7 @@ import torch as th
 
 from rtg import _core, errors
 from rtg.compare.report_tables import table
+from rtg.compare.run_results import EVALUATION
 from rtg.files import run_folder
 from rtg.learn import policy_file, robustness
 from rtg.learn.robustness import Row, Variant
@@ -76,7 +77,7 @@ def evaluate(run: Path, episodes: int) -> str:
             }
             for row in rows
         ]
-        run_folder.write_json(run / "evaluation.json", {"episodes": episodes, "rows": found})
+        run_folder.write_json(run / EVALUATION, {"episodes": episodes, "rows": found})
         plots.robustness(run / "evaluation.png", _title(config), rows)
     return text
 
@@ -86,7 +87,7 @@ def draw_again(run: Path) -> None:
 
     Raises UserError if its file is damaged.
     """
-    file = run / "evaluation.json"
+    file = run / EVALUATION
     if not file.is_file():
         return
     with errors.fields_of(file):

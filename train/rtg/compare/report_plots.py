@@ -1,4 +1,4 @@
-"""Plots of a comparison: learning curves, costs, replay gaps, effects of swept settings."""
+"""Plots of a comparison: learning curves, costs, profiles, replay gaps, swept settings."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _PALETTE = {
     "bc_rtg": ("#00707a", "-."),
     "planner": ("#a50026", "-."),
 }
-_LEVELS = np.linspace(0.01, 1.0, 100)  # of performance profiles
+LEVELS = np.arange(1, 101) / 100  # of performance profiles: k / 100 as in successes
 _LINE_STYLES = ("-", "--", "-.", ":")
 _COSTS = {
     "interactions": "interactions (dash-dotted: rounds of learning)",
@@ -305,22 +305,20 @@ def profiles(path: Path, scores_by_label: Mapping[str, Mapping[str, Floats]]) ->
     """
     style_of = line_styles(list(scores_by_label))
     with plots.style():
-        figure, axis = plt.subplots(figsize=(7.2, 4.8), layout="constrained")
+        figure, axis = plt.subplots(figsize=(8.6, 4.8), layout="constrained")
         for label, by_task in scores_by_label.items():
             scores = list(by_task.values())
             colour, line_style = style_of[label]
-            axis.plot(_LEVELS, profile(scores, _LEVELS), color=colour, ls=line_style, lw=2.0)
-            found = band(lambda drawn: profile(drawn, _LEVELS), scores)
+            count = sum(map(len, scores))
+            words = f"{label} ({count} runs, {len(scores)} tasks)"
+            (line,) = axis.step(LEVELS, profile(scores, LEVELS), color=colour, lw=2.0, label=words)
+            line.set_linestyle(line_style)
+            found = band(lambda drawn: profile(drawn, LEVELS), scores)
             if found is not None:
-                axis.fill_between(_LEVELS, *found, color=colour, alpha=0.18, lw=0)
+                axis.fill_between(LEVELS, *found, step="pre", color=colour, alpha=0.18, lw=0)
         axis.set(xlim=(0.0, 1.0), ylim=(-0.03, 1.03))
         axis.set(xlabel="final success of at least", ylabel="share of the runs")
-        handles = [
-            plt.Line2D([], [], color=style_of[label][0], ls=style_of[label][1], lw=2)
-            for label in scores_by_label
-        ]
-        shared, names = split_names(list(scores_by_label))
-        figure.legend(handles, names, loc="outside right upper", title=shared, frameon=False)
+        figure.legend(loc="outside right upper", frameon=False)
         plots.headline(figure, "performance profiles, 95 % intervals of the seeds")
         plots.save(figure, path)
 

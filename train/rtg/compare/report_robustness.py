@@ -12,15 +12,17 @@ import numpy as np
 from rtg.compare import report_plots
 from rtg.compare.report_tables import NO_VALUE, spread, table
 from rtg.compare.run_results import Comparison, RunResult
+from rtg.learn.robustness import AS_TRAINED
 from rtg.pictures import plots
 
 NOTE = """\
 Success of the final policies (`./run.sh evaluate`), means ± standard deviations over the seeds:
 from other starts, with Gaussian noise on the poses that the policy sees, with friction of all
 bodies, masses of the objects or strides multiplied, with bodies that coast after a push, in other
-simulators. Of starts that would lie outside the arena or have bodies overlap others are drawn."""
+simulators. Starts outside the arena, or in which bodies overlap, are drawn anew. `ddqn_rtg_dr` has
+its own, wider starts in all rows but those of moved objects."""
 # Groups of variants that the picture shows, with the name of their axis, and the amount as trained.
-_PANELS = (
+PANELS = (
     ("objects moved", "objects moved by up to [m]", None),
     ("objects turned", "objects turned by up to [rad]", 0.0),
     ("noise of poses", "noise of poses, standard deviation [m]", 0.0),
@@ -28,8 +30,6 @@ _PANELS = (
     ("mass of objects", "mass of objects, factor", 1.0),
     ("stride", "stride, factor", 1.0),
 )
-
-Rows = Sequence[Mapping[str, Any]]  # of evaluation.json
 
 
 def _evaluated(comparison: Comparison, task: str) -> dict[str, list[RunResult]]:
@@ -46,13 +46,9 @@ def is_evaluated(comparison: Comparison, task: str) -> bool:
 
 
 def _successes(runs: Sequence[RunResult], group: str, label: str) -> list[float | None]:
-    """Returns the success of each run under a variant; None where its settings are refused."""
-    return [
-        row["success"]
-        for run in runs
-        for row in run.evaluation
-        if (row["group"], row["label"]) == (group, label)
-    ]
+    """Returns the success of each run under a variant; None where there is none."""
+    by_run = [{(row["group"], row["label"]): row["success"] for row in r.evaluation} for r in runs]
+    return [successes.get((group, label)) for successes in by_run]
 
 
 def robustness_table(comparison: Comparison, task: str) -> str:
@@ -73,12 +69,12 @@ def robustness_table(comparison: Comparison, task: str) -> str:
     return table([task, "", *heads], shown, left=2)
 
 
-def _line(rows: Rows, group: str, trained: float | None) -> dict[float, float]:
+def _line(rows: Sequence[Mapping[str, Any]], group: str, trained: float | None) -> dict[float, Any]:
     """Returns the success of one run by the amount of a group of variants."""
-    of_group = {row["amount"]: row["success"] for row in rows if row["group"] == group}
-    as_trained = {} if trained is None else {trained: rows[0]["success"]}
-    known = {by: success for by, success in of_group.items() if success is not None}
-    return dict(sorted({**as_trained, **known}.items()))
+    amounts = {group: None, AS_TRAINED: trained}
+    shown = [row for row in rows if row["group"] in amounts]
+    by_amount = {row["amount"] or amounts[row["group"]]: row["success"] for row in shown}
+    return {amount: success for amount, success in by_amount.items() if amount is not None}
 
 
 def robustness(path: Path, comparison: Comparison, task: str) -> None:
@@ -87,11 +83,11 @@ def robustness(path: Path, comparison: Comparison, task: str) -> None:
     styles = report_plots.line_styles(list(runs_by_label))
     with plots.style():
         figure, axes = plt.subplots(2, 3, figsize=(9.6, 6.2), layout="constrained", sharey=True)
-        for axis, (group, name, trained) in zip(axes.flat, _PANELS, strict=True):
+        for axis, (group, name, trained) in zip(axes.flat, PANELS, strict=True):
             for label, runs in runs_by_label.items():
                 lines = [_line(run.evaluation, group, trained) for run in runs]
-                grid = sorted(set.intersection(*map(set, lines)))
-                values = np.array([[line[by] for by in grid] for line in lines])
+                grid = sorted(set().union(*lines))
+                values = np.array([[line.get(by) for by in grid] for line in lines], float)
                 report_plots.draw_curve(axis, (np.array(grid), values), True, styles[label])
             axis.set(xlabel=name, ylim=(-0.03, 1.03))
         for axis in axes[:, 0]:

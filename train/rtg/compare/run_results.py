@@ -186,8 +186,14 @@ def _evaluation(file: Path) -> list[dict[str, Any]]:
     if not file.is_file():
         return []
     with fields_of(file):
-        names = ("group", "label", "amount", "success")
-        return [{name: row[name] for name in names} for row in read_json(file)["rows"]]
+        rows = [{"amount": None, **row} for row in read_json(file)["rows"]]
+        for row in rows:
+            texts, numbers = [row["group"], row["label"]], [row["success"], row["amount"]]
+            if not all(isinstance(text, str) for text in texts):
+                raise TypeError(f"a row is named {texts!r}")
+            if not all(isinstance(number, int | float | None) for number in numbers):
+                raise TypeError(f"{texts} has {numbers!r}")
+        return rows
 
 
 def _state_without_result(run: Path) -> str:

@@ -29,6 +29,7 @@ _FACTORS = (0.5, 0.7, 1.3, 2.0)  # of friction and of masses
 _STRIDES = (0.75, 0.9, 1.1, 1.25)  # factors
 _COASTING = (10.0, 4.0, 2.0)  # physics.damping, with inertia
 _NOISE_SEED = 5
+AS_TRAINED = "as trained"  # the group of the variant without a difference
 _SIMULATOR = "simulator"  # the group of other forward simulators
 _REASON_LENGTH = 100  # characters, of why a variant is not possible
 
@@ -40,7 +41,7 @@ class Variant(NamedTuple):
     label: str  # by how much
     settings: tuple[str, ...] = ()
     noise: float = 0.0  # standard deviation of the poses that the policy sees
-    amount: float | None = None  # the number in `label`, where groups have one: [m], [rad], factor
+    amount: float | None = None  # [m], [rad] or a factor, where a report draws the group over it
 
 
 class Row(NamedTuple):
@@ -159,7 +160,7 @@ def variants(config: _core.Config) -> list[Variant]:
     """Returns the variants of a task, the trained one first."""
     task = json.loads(config.json)["task"]
     unit = 1.0 / config.task.metre
-    found = [Variant("as trained", ""), *_start_variants(task, unit)]
+    found = [Variant(AS_TRAINED, ""), *_start_variants(task, unit)]
     found += [
         Variant("noise of poses", f"{by * unit:.3g} m, {by} rad", noise=by, amount=by * unit)
         for by in _NOISE
