@@ -311,8 +311,8 @@ def profiles(path: Path, scores_by_label: Mapping[str, Mapping[str, Floats]]) ->
             colour, line_style = style_of[label]
             count = sum(map(len, scores))
             words = f"{label} ({count} runs, {len(scores)} tasks)"
-            (line,) = axis.step(LEVELS, profile(scores, LEVELS), color=colour, lw=2.0, label=words)
-            line.set_linestyle(line_style)
+            profile_of = profile(scores, LEVELS)
+            axis.step(LEVELS, profile_of, color=colour, ls=line_style, lw=2.0, label=words)
             found = band(lambda drawn: profile(drawn, LEVELS), scores)
             if found is not None:
                 axis.fill_between(LEVELS, *found, step="pre", color=colour, alpha=0.18, lw=0)
