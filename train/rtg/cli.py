@@ -156,16 +156,17 @@ def _draw_run(folder: Path, suffix: str) -> int:
 def _evaluate(words: Sequence[str]) -> int:
     parser = run_args.Parser(
         prog=f"{paths.COMMAND} evaluate",
-        description="Success of a trained policy from other starts, with noise, other physics.",
+        description="Success of trained policies from other starts, with noise, other physics.",
     )
-    parser.add_argument("folder", metavar="RUN", type=Path, help="the folder of a run")
+    parser.add_argument("folders", metavar="RUN", nargs="+", type=Path, help="folders of runs")
     parser.add_argument("--episodes", metavar="N", default="100", help="starts of each row (100)")
     args = parser.parse_args(words)
     if not args.episodes.isdecimal() or not 1 <= int(args.episodes) <= 100_000:
         raise UserError(f"--episodes {args.episodes}: legal: a number from 1 to 100000")
     from rtg.compare.evaluate import evaluate
 
-    print(evaluate(args.folder, int(args.episodes)), end="")
+    for folder in args.folders:
+        print(evaluate(folder, int(args.episodes)), flush=True)
     return 0
 
 

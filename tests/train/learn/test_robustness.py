@@ -238,6 +238,24 @@ def test_the_table_says_which_policy_it_is_of(
     assert "\nGreedy policy. 1 held-out starts each.\n" in greedy
 
 
+def test_the_command_takes_several_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from rtg import cli
+
+    monkeypatch.setattr(robustness, "variants", lambda config: [Variant("as trained", "")])
+    runs = [tmp_path / "1", tmp_path / "2"]
+    for seed, run in enumerate(runs, start=1):
+        run.mkdir()
+        trained(run, f"run.seed={seed}")
+    assert cli.main(["evaluate", *map(str, runs), "--episodes", "1"]) == 0
+    assert re.findall("^# .*", capsys.readouterr().out, re.MULTILINE) == [
+        "# gathering, ddqn_rtg, seed 1",
+        "# gathering, ddqn_rtg, seed 2",
+    ]
+    assert all((run / "evaluation.md").is_file() for run in runs)
+
+
 def test_the_layouts_of_a_hindsight_policy_are_drawn_once_for_all_variants(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,4 +1,4 @@
-"""`./run.sh evaluate RUN`: success of a run's policy against what it was not trained for."""
+"""`./run.sh evaluate RUN...`: success of a run's policy against what it was not trained for."""
 
 from __future__ import annotations
 

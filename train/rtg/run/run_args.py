@@ -26,7 +26,7 @@ tools:
   ./run.sh view [RUN]                          show a run in the browser, live or afterwards
   ./run.sh spy                                 watch the channels of a run in the terminal
   ./run.sh lcm-spy                             the same with LCM's own viewer (needs Java)
-  ./run.sh evaluate RUN                        success of its policy elsewhere, as a table
+  ./run.sh evaluate RUN...                     success of their policies elsewhere, as tables
   ./run.sh export minari RUN                   its data for other libraries; or lerobot
   ./run.sh reproduce [TASK...]                 methods x seeds on tasks, and a report
   ./run.sh plot DIR... [--format pdf]          that report, or the pictures of a run, anew
