@@ -21,9 +21,9 @@ class Piece {
 
   std::size_t units() const { return units_; }
 
-  /// Tells how long the last piece took.
-  void took(bus::Seconds seconds) {
-    if (seconds < 0.5) units_ *= 2;
+  /// Tells how long a piece of `units` took. One that is not full says nothing of longer ones.
+  void took(std::size_t units, bus::Seconds seconds) {
+    if (seconds < 0.5 && units >= units_) units_ *= 2;
     if (seconds > 2.0) units_ = std::max(kLeast, units_ / 2);
   }
 
@@ -57,7 +57,7 @@ Batch journaled(Batch batch, UnitJournal& journal, const TaskShape& shape) {
       for (const JobId id : some) std::ranges::copy(units.jobs(id), std::back_inserter(unanswered));
       const bus::Seconds begin = bus::monotonic_now();
       const auto answers = batch(unanswered);
-      piece.took(bus::monotonic_now() - begin);
+      piece.took(some.size(), bus::monotonic_now() - begin);
       auto rest = std::span(answers);
       for (const JobId id : some) {
         const auto results = rest.first(units.jobs(id).size());

@@ -150,6 +150,34 @@ TEST(Journaled, AnAnswerThatIsIllegalOrGivenUpIsComputed) {
   EXPECT_EQ(journal.cpu_s_found(), 4.0);
 }
 
+TEST(Piece, IsAsLongAsTheLongestThatWasQuick) {
+  Piece piece;
+  for (int k = 0; k < 100; ++k) piece.took(Piece::kLeast - 1, 0.001);
+  EXPECT_EQ(piece.units(), Piece::kLeast);
+  piece.took(Piece::kLeast, 0.001);
+  EXPECT_EQ(piece.units(), 2 * Piece::kLeast);
+  for (int k = 0; k < 100; ++k) piece.took(Piece::kLeast, 3.0);
+  EXPECT_EQ(piece.units(), Piece::kLeast);
+}
+
+// A piece that grew after each quick batch had no unit any more after sixty of them: a run of many
+// small layers never ended.
+TEST(Journaled, ManyQuickBatchesAreAllAnswered) {
+  const testing::Folder folder;
+  const TaskShape shape{.bodies = 1, .actions = 48};
+  UnitJournal journal(folder.path / "journal", kGeneration);
+  int empty = 0;
+  const search::ReplayBatch replay = [&](std::span<const search::ReplayJob> some) {
+    if (some.empty() && ++empty > 3) throw std::logic_error("asked again and again for nothing");
+    std::vector<search::ReplayResult> results;
+    for (const search::ReplayJob& job : some) results.push_back({job.start, true, 0.5});
+    return results;
+  };
+  const search::ReplayBatch kept = journaled<ReplayService>(replay, journal, shape);
+  for (int k = 0; k < 100; ++k)
+    EXPECT_EQ(kept(std::vector<search::ReplayJob>{{{{1.0 * k, 2.0, 3.0}}, 4}}).size(), 1);
+}
+
 TEST(Journaled, AKillWithinABatchLosesThePieceUnderWayAlone) {
   const testing::Folder folder;
   const TaskShape shape{.bodies = 1, .actions = 48};
