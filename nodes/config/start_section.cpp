@@ -61,11 +61,13 @@ std::pair<double, double> angles_of(const FieldReader& reader, bool is_robot) {
   return {-most, most};
 }
 
-Polygon rectangle(std::pair<double, double> x, std::pair<double, double> y) {
+/// Returns the rectangle between the ends, which are on the grid of the units, as its corners are:
+/// so their text reads back to the bit.
+Polygon rectangle(std::pair<double, double> x, std::pair<double, double> y, const Units& units) {
   for (auto* side : {&x, &y})
     if (side->second - side->first < kThin / 2.0) {  // what was made thin is read back as it is
-      side->first -= kThin / 2.0;
-      side->second += kThin / 2.0;
+      side->first = units.on_grid(side->first - kThin / 2.0);
+      side->second = units.on_grid(side->second + kThin / 2.0);
     }
   return {{{x.first, y.first}, {x.second, y.first}, {x.second, y.second}, {x.first, y.second}}};
 }
@@ -95,7 +97,7 @@ Start read_box_start(const ConfigNode& section, const std::string& path, const U
   const FieldReader reader(section, path, kRangeKeys, units);
   const auto x = lengths_of(reader, "x"), y = lengths_of(reader, "y"),
              theta = angles_of(reader, is_robot);
-  return middle_of({rectangle(x, y), theta.first, theta.second});
+  return middle_of({rectangle(x, y, units), theta.first, theta.second});
 }
 
 }  // namespace
@@ -118,7 +120,7 @@ ConfigNode start_node(const Pose& pose, const std::optional<tasks::StartRange>& 
   if (const auto* polygon = std::get_if<Polygon>(&range->region); polygon && polygon->size() == 4) {
     const Vector2d &low = polygon->vertices[0], &high = polygon->vertices[2];
     const std::pair x{low.x(), high.x()}, y{low.y(), high.y()};
-    if (*polygon == rectangle(x, y))
+    if (*polygon == rectangle(x, y, units))
       return mapping({{"x", "", lengths_node({x.first, x.second}, units)},
                       {"y", "", lengths_node({y.first, y.second}, units)},
                       {"theta", "", numbers_node({range->least, range->most})}});

@@ -346,6 +346,20 @@ TEST(Config, NamesThatYamlReadsAsNothingReadBackToThemselves) {
   EXPECT_EQ(again.task.name, "NULL");
 }
 
+// A place of a fixed y is a thin range of places. With 20 of these radii its ends had no short
+// text.
+TEST(Config, AThinRangeOfStartsReadsBackToTheBitWithARobotOfAnySize) {
+  const std::string file = std::string(RTG_CONFIG_FOLDER) + "/push_t.yaml";
+  for (int k = 1; k < 60; ++k) {
+    const std::string radius = "task.bodies.0.shape.disc=" + number_text(0.1 * k);
+    const Config config =
+        load_config(file, {{radius, "task.bodies.1.start={x: [-5, 5], y: 5, theta: [-3.1, 3.1]}"}});
+    const Config again = parse_config(canonical_yaml(config), "canonical.yaml");
+    EXPECT_EQ(again.task.start_ranges[1], config.task.start_ranges[1]) << radius;
+    EXPECT_EQ(canonical_yaml(again), canonical_yaml(config)) << radius;
+  }
+}
+
 TEST(Config, TheHashTellsConfigurationsApart) {
   const auto with_breadth = [](int breadth) {
     return config_hash(parsed("search: {breadth: " + std::to_string(breadth) + "}\n"));
