@@ -90,10 +90,9 @@ class LocalNetwork : public Network {
   std::optional<std::span<const std::uint8_t>> next(std::chrono::milliseconds timeout,
                                                     Counters&) override {
     std::unique_lock lock(mutex_);
-    const auto is_there = [this] { return !waiting_.empty(); };
-    // A wait of 0 would put the thread to sleep for a moment.
-    if (!is_there() && (timeout == 0ms || !arrived_.wait_for(lock, timeout, is_there)))
-      return std::nullopt;
+    if (timeout > 0ms)  // a wait of 0 would put the thread to sleep for a moment
+      arrived_.wait_for(lock, timeout, [this] { return !waiting_.empty(); });
+    if (waiting_.empty()) return std::nullopt;
     current_ = std::move(waiting_.front());
     waiting_.pop_front();
     return current_;

@@ -82,7 +82,6 @@ class StreamCursor {
   }
 
   std::int64_t cursor() const { return cursor_; }  // number of the next row in order
-  std::int64_t count() const { return count_; }    // rows known to exist
   /// Returns whether the number of rows is final and every row has been returned.
   bool complete() const { return sealed_ && cursor_ == count_; }
 

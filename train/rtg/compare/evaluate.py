@@ -10,7 +10,7 @@ import torch as th
 
 from rtg import _core, errors
 from rtg.compare.report_tables import table
-from rtg.compare.run_results import EVALUATION
+from rtg.compare.run_results import EVALUATION, read_evaluation
 from rtg.files import run_folder
 from rtg.learn import policy_file, robustness
 from rtg.learn.robustness import Row, Variant
@@ -87,10 +87,10 @@ def draw_again(run: Path) -> None:
 
     Raises UserError if its file is damaged.
     """
-    file = run / EVALUATION
-    if not file.is_file():
+    found = read_evaluation(run)
+    if not found:
         return
-    with errors.fields_of(file):
+    with errors.fields_of(run / EVALUATION):
         rows = [
             Row(
                 Variant(row["group"], row["label"]),
@@ -98,7 +98,7 @@ def draw_again(run: Path) -> None:
                 row["episode_length"],
                 row["reason"],
             )
-            for row in run_folder.read_json(file)["rows"]
+            for row in found
         ]
     title = _title(effective_config.load_written(run / "config.yaml"))
     plots.robustness(run / "evaluation.png", title, rows)

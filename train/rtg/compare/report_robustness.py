@@ -45,26 +45,23 @@ def is_evaluated(comparison: Comparison, task: str) -> bool:
     return bool(_evaluated(comparison, task))
 
 
-def _successes(runs: Sequence[RunResult], group: str, label: str) -> list[float | None]:
-    """Returns the success of each run under a variant; None where there is none."""
-    by_run = [{(row["group"], row["label"]): row["success"] for row in r.evaluation} for r in runs]
-    return [successes.get((group, label)) for successes in by_run]
+def _by_variant(run: RunResult) -> dict[tuple[str, str], float | None]:
+    """Returns the success of a run by group and label of the variant; None if not possible."""
+    return {(row["group"], row["label"]): row["success"] for row in run.evaluation}
 
 
 def robustness_table(comparison: Comparison, task: str) -> str:
     """Returns a table with a row for each variant and a column for each label."""
-    runs_by_label = _evaluated(comparison, task)
-    variants = dict.fromkeys(
-        (row["group"], row["label"])
-        for runs in runs_by_label.values()
-        for run in runs
-        for row in run.evaluation
-    )
+    found = {
+        label: [_by_variant(run) for run in runs]
+        for label, runs in _evaluated(comparison, task).items()
+    }
+    variants = dict.fromkeys(variant for runs in found.values() for run in runs for variant in run)
     rows = [
-        [*variant, *(spread(_successes(runs, *variant), ".2f") for runs in runs_by_label.values())]
+        [*variant, *(spread([run.get(variant) for run in runs], ".2f") for runs in found.values())]
         for variant in variants
     ]
-    heads = [f"`{label}` ({len(runs)})" for label, runs in runs_by_label.items()]
+    heads = [f"`{label}` ({len(runs)})" for label, runs in found.items()]
     shown = [row for row in rows if any(cell != NO_VALUE for cell in row[2:])]
     return table([task, "", *heads], shown, left=2)
 

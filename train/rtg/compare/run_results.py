@@ -164,7 +164,7 @@ def _result(run: Path, cell: Cell, failures: Container[str]) -> RunResult:
             curve = _curve(run / "progress.csv", summary)
         made_with = read_json(run / versions.FILE)
         train = effective_config.load_recorded(run / "config.yaml").train
-        tried = _evaluation(run / EVALUATION)
+        tried = read_evaluation(run)
         return RunResult(cell, run, "done", summary, made_with, curve, train, tried)
     state = "failed" if cell.name in failures else _state_without_result(run)
     return RunResult(cell, run, state, {}, {}, {}, None)
@@ -178,11 +178,12 @@ def _check_figures(summary: Mapping[str, Any]) -> None:
             raise TypeError(f"{name} is {value!r}")
 
 
-def _evaluation(file: Path) -> list[dict[str, Any]]:
-    """Reads the rows that `./run.sh evaluate` wrote; [] without the file.
+def read_evaluation(run: Path) -> list[dict[str, Any]]:
+    """Reads the rows that `./run.sh evaluate` wrote; [] if there are none.
 
     Raises UserError if the file is damaged.
     """
+    file = run / EVALUATION
     if not file.is_file():
         return []
     with fields_of(file):
