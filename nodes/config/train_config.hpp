@@ -172,7 +172,7 @@ struct TrainConfig {
     visit_experience(v);
     v.integer("eval_every", eval_every, 1, kMany, "interactions between evaluations");
     v.integer("eval_episodes", eval_episodes, 1, 100000,
-              "episodes of an evaluation, one per held-out start");
+              "episodes of an evaluation, one per held-out start; ten times as many at the end");
     v.integer("checkpoint_every", checkpoint_every, 1, kMany, "interactions between checkpoints");
     v.number("stop_at_success", stop_at_success, 0.0, 1.0,
              "success rate that ends training early; 0: never");

@@ -54,7 +54,7 @@ def after_polls(count: int) -> Callable[[], bool]:
 def flat(value: object) -> list[object]:
     """Every leaf of a checkpoint, seconds left out."""
     if isinstance(value, dict):
-        kept = [key for key in value if key not in ("wall_s", "cpu_s")]
+        kept = [key for key in value if key not in ("wall_s", "cpu_s", "evaluation_cpu_s")]
         return [leaf for key in kept for leaf in [key, *flat(value[key])]]
     if isinstance(value, list):
         return [leaf for part in value for leaf in flat(part)]

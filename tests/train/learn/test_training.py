@@ -15,7 +15,7 @@ from rtg.files import checked_table, checkpoint, dataset
 from rtg.files.dataset import Rows
 from rtg.files.recorder import Recorder
 from rtg.learn import policy_file, trainer
-from rtg.learn.evaluation import FINAL_SEED, HELD_OUT_SEED, evaluate, held_out_starts
+from rtg.learn.evaluation import HELD_OUT_SEED, evaluate, final_starts, held_out_starts
 from rtg.learn.offline_data import FileSource
 from rtg.learn.training_log import COLUMNS, TrainingLog
 from training_runs import TINY, Stream, after_polls, flat, run_folder, training
@@ -37,6 +37,8 @@ def test_a_run_leaves_its_files(tmp_path: Path, rows: Rows) -> None:
     assert result["learning_pushes"] == 240
     spent = [float(row["cpu_s"]) for row in table]
     assert 0 < spent[0] < spent[1] < spent[2] <= result["train_cpu_s"] + 1e-3  # it is rounded
+    of_evaluations = [float(row["evaluation_cpu_s"]) for row in table]
+    assert 0 < of_evaluations[0] < of_evaluations[1] < of_evaluations[2] < spent[2]
     state = json.loads((folder / "training_state.json").read_text())
     assert state["done"] and (state["interactions"], state["budget"]) == (240, 240)
     with np.load(folder / "best_episode.npz") as best:
@@ -254,7 +256,8 @@ def test_held_out_starts_are_legal_distinct_and_no_training_starts() -> None:
     assert len(np.unique(starts[:, 1, 0])) == 50
     assert np.abs(starts - task.start).max() <= task.start_jitter + 1e-6
     assert HELD_OUT_SEED > 2**31 - 1  # the largest legal run.seed
-    final = held_out_starts(config, FINAL_SEED)
+    final = final_starts(config)
+    assert len(final) == 500
     assert not set(starts[:, 1, 0]) & set(final[:, 1, 0])
 
 

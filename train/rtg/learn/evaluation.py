@@ -18,7 +18,10 @@ Values = Callable[[NDArray[np.float32]], NDArray[Any]]
 
 # Seeds of the held-out starts. They exceed all seeds of runs, so no training start is among them.
 HELD_OUT_SEED = 1 << 63  # for evaluations during training, which decide when to stop
-FINAL_SEED = HELD_OUT_SEED + 1  # for the final result: no decision depended on these starts
+# For the final result. No decision depends on these starts, neither when to stop nor the choice of
+# a setting: before version 0.2, while settings were chosen, the seed was another one.
+FINAL_SEED = HELD_OUT_SEED + 2
+FINAL_FACTOR = 10  # number of final episodes per episode of an evaluation during training
 
 
 class Evaluation(NamedTuple):
@@ -48,9 +51,21 @@ def held_out_starts(config: _core.Config, seed: int = HELD_OUT_SEED, number: int
     There is one for each of the `train.eval_episodes`. They are of the random stream `seed`, those
     of evaluation `number`: a policy that is lucky in one is not so in the next.
     """
-    amplitude, count = config.evaluation_jitter, config.train.eval_episodes
-    of_evaluation = range(number * count, (number + 1) * count)
-    return np.stack([config.task.jittered_start(amplitude, seed, k) for k in of_evaluation])
+    count = config.train.eval_episodes
+    return _starts(config, seed, range(number * count, (number + 1) * count))
+
+
+def final_starts(config: _core.Config) -> Floats:
+    """Returns the starts of the final evaluation, the same for every run. [episodes, bodies, 3]
+
+    There are FINAL_FACTOR for each of the `train.eval_episodes`.
+    """
+    return _starts(config, FINAL_SEED, range(FINAL_FACTOR * config.train.eval_episodes))
+
+
+def _starts(config: _core.Config, seed: int, of_stream: range) -> Floats:
+    amplitude = config.evaluation_jitter
+    return np.stack([config.task.jittered_start(amplitude, seed, k) for k in of_stream])
 
 
 def _greedy_actions(

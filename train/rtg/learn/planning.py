@@ -58,7 +58,7 @@ def evaluate_plans(task: _core.Task, plans: list[Plan], discount: float) -> Eval
 
 
 class Planning:
-    """Plans from the held-out starts of the final evaluation. Takes the place of class Training.
+    """Plans from the first `train.eval_episodes` of the final_starts(), in place of Training.
 
     A resumed run continues with the next start.
     """

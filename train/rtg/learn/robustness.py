@@ -21,7 +21,8 @@ from rtg.learn.evaluation import FINAL_SEED, Values, evaluate
 Floats = NDArray[np.float64]
 
 # Lengths are for a robot of 0.8 m radius, those of others are in proportion.
-_MOVED = (0.1, 0.25, 0.5, 1.0, 2.0)
+_MOVED = (0.0, 0.1, 0.25, 0.5, 1.0, 2.0)
+_TURNED_SHIFT = 0.1  # objects that turn also move by up to so much
 _TURNED = (0.25, 0.5, 1.0)  # [rad]
 _FULL_TURN = 2.0 * math.pi - 1e-3  # less, as files round it [rad]
 _NOISE = (0.02, 0.05, 0.1)  # also [rad]
@@ -152,7 +153,7 @@ def _start_variants(task: dict[str, Any], unit: float) -> Iterator[Variant]:
         moved, settings = by * unit, _moved(task, by * unit)
         yield Variant("objects moved", f"by up to {moved:.3g} m", settings, amount=moved)
     for by in _TURNED:
-        if settings := _turned(task, by, _MOVED[0] * unit):
+        if settings := _turned(task, by, _TURNED_SHIFT * unit):
             yield Variant("objects turned", f"by up to {by} rad", settings, amount=by)
 
 

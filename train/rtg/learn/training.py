@@ -16,7 +16,7 @@ from rtg.learn import device, policy_file, training_result
 from rtg.learn.clock import Clock
 from rtg.learn.cloning import Cloning, imitated
 from rtg.learn.ddqn import DoubleDqn
-from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, evaluate, held_out_starts
+from rtg.learn.evaluation import Evaluation, Floats, evaluate, final_starts, held_out_starts
 from rtg.learn.offline_data import OfflineData, Source, read_rows
 from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.learn.training_log import TrainingLog
@@ -166,7 +166,8 @@ class Training:
         over = self.scheduled_interactions >= self.settings.interactions > evaluated_at
         if over or self._is_due(self.settings.eval_every, evaluated_at):
             with self.model.stages["evaluation"]:
-                self._log_row(self.evaluate())
+                found = self.evaluate()
+            self._log_row(found)
         if self._is_due(self.settings.checkpoint_every, self._saved_at):
             with self.model.stages["saving"]:
                 self.save()
@@ -195,6 +196,7 @@ class Training:
                 "offline_transitions": self.data.count,
                 "pushes": self.pushes,
                 **self.clock.seconds(),
+                "evaluation_cpu_s": self.model.stages["evaluation"].cpu_s,
             }
         )
         self.log.display(self._display_state(), force=True)
@@ -285,7 +287,7 @@ class Training:
         The final evaluation has starts of its own. Those of earlier evaluations would be biased: an
         evaluation with chance success may have stopped training.
         """
-        final = self._evaluate(held_out_starts(self.config, FINAL_SEED))
+        final = self._evaluate(final_starts(self.config))
         weights = self.model.mean.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, self.settings, weights)
         self.log.write_result(final, training_result.figures(self, final))

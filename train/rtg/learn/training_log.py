@@ -36,6 +36,7 @@ COLUMNS = (
     "pushes",  # simulated for learning: by interactions, a curriculum or planning
     "wall_s",
     "cpu_s",  # of the learner's processes; includes evaluations, as wall_s does
+    "evaluation_cpu_s",  # part of it: all evaluations so far
 )
 DISPLAY_INTERVAL = 0.5  # [s]
 
