@@ -79,7 +79,7 @@ def test_the_result_is_that_of_a_search_from_each_final_start(tmp_path: Path) ->
         "episode_return_mean": success.mean(),
         "offline_transitions": 0,
         "learning_pushes": sum(pushes),
-        "planned_starts": 8,
+        "final_episodes": 8,
     }
     with np.load(folder / "best_episode.npz") as best:
         assert best["success"]

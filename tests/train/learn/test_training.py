@@ -30,7 +30,7 @@ def test_a_run_leaves_its_files(tmp_path: Path, rows: Rows) -> None:
     assert set(table[0]) == {*COLUMNS, checked_table.COLUMN}
     assert all(table[-1][name] != "" for name in COLUMNS)
     result = json.loads((folder / "training.json").read_text())
-    assert result["interactions"] == 240
+    assert result["interactions"] == 240 and result["final_episodes"] == 20
     assert {"success_rate", "episode_length_mean", "episode_return_mean"} <= set(result)
     assert result["train_wall_s"] > 0 and result["train_cpu_s"] > 0
     assert [row["pushes"] for row in table] == ["80", "160", "240"]

@@ -113,7 +113,7 @@ class Planning:
             "train_wall_s": round(wall, 3),
             "train_cpu_s": round(cpu, 3),
             "learning_pushes": pushes,
-            "planned_starts": len(self.plans),
+            "final_episodes": len(self.plans),
         }
         self.log.write_result(final, figures)
         self._display()

@@ -20,6 +20,7 @@ def figures(run: Training, final: Evaluation) -> dict[str, Any]:
         "gradient_steps": run.model.gradient_steps,
         "online_successes": run.env.successes,
         **final.summary(),
+        "final_episodes": len(final.success),
         **run.model.recent_episodes(),
         **{f"train_{name}": round(spent, 3) for name, spent in run.clock.seconds().items()},
         "learning_stages": run.model.stages.seconds(),
