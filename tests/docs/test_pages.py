@@ -217,8 +217,9 @@ def figures(report: str) -> dict[str, tuple[str, str]]:
     for task, methods in json.loads(text).items():
         runs = methods["ddqn_rtg"]
         success = statistics.mean(run["success_rate"] for run in runs)
-        to_95 = statistics.mean(run["interactions_to_95"] for run in runs) / 1000
-        found[task] = f"{success:.2f}", f"{to_95:.0f}"
+        known = [run["interactions_to_95"] for run in runs if run["interactions_to_95"]]
+        few = "" if len(known) == len(runs) else f" ({len(known)} of {len(runs)})"
+        found[task] = f"{success:.2f}", f"{statistics.mean(known) / 1000:.0f}{few}"
     return found
 
 

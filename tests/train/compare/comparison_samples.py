@@ -42,6 +42,7 @@ def summary_of(seed: int) -> dict[str, Any]:
         "candidates": 2000,
         "pruned": 1000,
         "converged": 990,
+        "pushing_converged": 220,
         "pushing_iterations_median": 31,
         "pushing_iterations_p90": 53,
         "reverse_cpu_s": 2.0,

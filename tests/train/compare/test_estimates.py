@@ -1,5 +1,7 @@
 """Figures over seeds and tasks, against hand calculations."""
 
+import itertools
+
 import numpy as np
 import pytest
 from rtg.compare.estimates import (
@@ -12,6 +14,8 @@ from rtg.compare.estimates import (
     mean_std,
     probability_of_improvement,
     profile,
+    rank_test,
+    task_mean,
 )
 from rtg.compare.report_plots import LEVELS
 
@@ -77,10 +81,36 @@ def test_the_interval_of_the_improvement_draws_seeds_of_both():
     assert improvement_interval(scores([3.0, 3.0]), scores([2.0, 0.0])) == (1.0, 1.0)
 
 
-def test_a_bar_is_reached_at_the_first_evaluation_that_has_it():
-    success = np.array([0.5, 0.7, 0.6, 0.7])
-    assert first_reach(success, 0.7) == 1
-    assert first_reach(success, 0.71) is None
+def test_a_bar_is_reached_at_the_first_of_two_evaluations_in_a_row_that_have_it():
+    success = np.array([0.7, 0.6, 0.7, 0.8, 0.9])
+    assert first_reach(success, 0.7) == 2
+    assert first_reach(success, 0.8) == 3
+    assert first_reach(success, 0.9) is None, "the last one alone may be luck"
+    assert first_reach(success[:1], 0.7) is None
+
+
+def test_the_mean_counts_tasks_alike():
+    assert task_mean(scores([0.0, 0.0, 0.0], [1.0])) == 0.5
+
+
+def test_the_rank_test_is_exact():
+    few, many = np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0])
+    assert rank_test(few, many) == 1 / 20 and rank_test(many, few) == 1.0
+    assert rank_test(few, np.array([4.0])) == 1 / 4
+    five = np.arange(5.0)
+    assert rank_test(five, five + 10.0) == 1 / 252
+
+
+def test_the_rank_test_counts_all_divisions_that_are_as_clear():
+    rng = np.random.default_rng(2)
+    for _ in range(30):
+        pooled = rng.integers(0, 4, size=8).astype(float)
+        pooled[pooled == 3.0] = np.inf
+        count = int(rng.integers(1, 8))
+        middle = [sum(pooled < x) + 0.5 * (sum(pooled == x) + 1) for x in pooled]
+        sums = [sum(of) for of in itertools.combinations(middle, count)]
+        expected = np.mean(np.array(sums) <= sum(middle[:count]))
+        assert rank_test(pooled[:count], pooled[count:]) == pytest.approx(expected)
 
 
 def test_a_course_that_ends_early_keeps_its_last_value():

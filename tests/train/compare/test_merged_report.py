@@ -47,3 +47,12 @@ def test_what_a_shard_fell_short_of_is_told() -> None:
     assert merged([short, report("search.transitions=50", "search.shard=1")])["shortfalls"] == [
         "too few"
     ]
+
+
+def test_shards_without_transitions_have_no_part_in_means() -> None:
+    one = report("search.transitions=50", "search.shard=0")
+    none = {**one, "transitions": 0, "headings_per_state": 0.0, "contact_share": 0.0}
+    found = merged([one, none])
+    for key in ("transitions", "headings_per_state", "contact_share"):
+        assert found[key] == pytest.approx(one[key]), key
+    assert merged([none, none])["headings_per_state"] == 0.0

@@ -53,9 +53,9 @@ def page(folder):
 
 def test_a_row_has_the_figures_of_its_seeds(page):
     to_95 = ["15 ± 0", "315 ± 0", "210 ± 0"]  # interactions, pushes and CPU seconds of all
-    good = ["1-2", "0.96 ± 0.00", "21.6 ± 0.0", "0.86 ± 0.00", "0.20 ± 0.00", "10 ± 0", *to_95]
+    good = ["1-2", "0.960 ± 0.000", "21.6 ± 0.0", "0.86 ± 0.00", "0.20 ± 0.00", "10 ± 0", *to_95]
     assert table_row(page, "ddqn_rtg") == good
-    bad = ["1-2", "0.70 ± 0.00", "32.0 ± 0.0", "0.63 ± 0.00", "0.00 ± 0.00", "20 ± 0"]
+    bad = ["1-2", "0.700 ± 0.000", "32.0 ± 0.0", "0.63 ± 0.00", "0.00 ± 0.00", "20 ± 0"]
     assert table_row(page, "ddqn_naive") == [*bad, "never", "never", "never"]
 
 
@@ -108,8 +108,9 @@ def test_runs_without_a_result_say_why(page):
 
 def test_all_tasks_are_pooled_and_compared_with_the_reference(page):
     pooled = "## All tasks together"
-    assert table_row(page, "ddqn_rtg", pooled) == ["1", "2", "0.96 [0.96, 0.96]", "–"]
-    assert table_row(page, "ddqn_naive", pooled)[-1] == "0.00 [0.00, 0.00]"
+    same = "0.960 [0.960, 0.960]"
+    assert table_row(page, "ddqn_rtg", pooled) == ["1", same, same, "0.960", "2 of 2", "–"]
+    assert table_row(page, "ddqn_naive", pooled)[-1] == "0.000 [0.000, 0.000]"
 
 
 def test_remarks_beside_the_runs_are_part_of_the_report(folder, page, tmp_path):
@@ -129,6 +130,17 @@ def test_the_third_of_a_run_that_ended_before_is_its_final_success(tmp_path):
     write_report(tmp_path, tmp_path)
     runs = json.loads((tmp_path / "report.json").read_text())["gathering"]["ddqn_rtg"]
     assert [run["success_at_third"] for run in runs] == [0.8, 0.8, 0.9]
+
+
+def test_the_budget_and_the_runs_that_did_not_use_it_up_are_told(tmp_path):
+    cells = [Cell("gathering", method, (), 1) for method in ("ddqn_rtg", "her", "planner")]
+    for cell, budget in zip(cells, (60_000, 15_000, 60_000), strict=True):
+        finished(tmp_path, cell, GOOD, budget=budget, final_episodes=1000)
+    write_grid(tmp_path, cells)
+    words = " ".join(write_report(tmp_path, tmp_path).read_text().split())
+    told = "Budget: 15,000 or 60,000 interactions, an evaluation every 2,500 from 100 starts, the "
+    assert told + "final one from 1,000. Before the budget" in words
+    assert "as their success was enough, ended 1 of the 2 runs." in words
 
 
 def test_transitions_of_another_commit_are_told(tmp_path):
@@ -151,7 +163,8 @@ def test_the_learners_are_named_and_a_run_without_gradient_steps_has_none(tmp_pa
         finished(tmp_path, cell, GOOD, **more)
     write_grid(tmp_path, cells)
     page = write_report(tmp_path, tmp_path).read_text()
-    assert "\n- learner: cpu, one core (2 runs); none (1 run)\n" in page
+    learned = "  - cpu, one core: gathering `ddqn_naive` 1; gathering `ddqn_rtg` 1\n"
+    assert f":\n{learned}  - none: gathering `planner` 1\n" in page
 
 
 def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):

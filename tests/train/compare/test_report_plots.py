@@ -171,7 +171,7 @@ def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):
         Cell("gathering", "ddqn_rtg", (), 1): [0.5, 0.97],
         Cell("gathering", "ddqn_rtg", ("train.batch=8",), 1): [0.5, 0.96],
         Cell("gathering", "ddqn_rtg", ("train.batch=16",), 1): [0.5, 0.6],
-        Cell("gathering", "ddqn_rtg", ("train.batch=16",), 2): [0.95, 0.8],
+        Cell("gathering", "ddqn_rtg", ("train.batch=16",), 2): [0.95, 0.96, 0.8],
         Cell("gathering", "dqn", (), 1): [0.0, 0.0],
     }
     report_plots.sweep(tmp_path / "sweep.png", comparison(tmp_path, cells), "gathering")
@@ -186,7 +186,7 @@ def test_a_sweep_shows_every_run_and_who_never_got_there(tmp_path, figures):
 
 
 def test_who_never_got_there_stands_beside_the_dots_and_alone_without_numbers(tmp_path, figures):
-    for curve in ([0.95, 0.8], [0.5, 0.8]):
+    for curve in ([0.95, 0.96, 0.8], [0.5, 0.8]):
         cells = {Cell("gathering", "ddqn_rtg", ("train.batch=8",), 1): [0.5, 0.6]}
         cells[Cell("gathering", "ddqn_rtg", ("train.batch=8",), 2)] = curve
         shown = comparison(tmp_path / str(curve[0]), cells)

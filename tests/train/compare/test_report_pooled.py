@@ -32,14 +32,16 @@ def test_methods_are_pooled_over_the_tasks_that_more_than_one_was_run_on(tmp_pat
         },
     )
     reference, her = (table_row(page, label, POOLED) for label in ("ddqn_rtg", "her"))
-    assert reference[:2] == ["2", "3"] and reference[2].startswith("0.60 [")
-    # Of 0.3 to 0.8 the middle half; 0.5 on gathering, 1 on sorting.
-    assert her[2].startswith("0.45 [") and her[3].startswith("0.75 [")
+    assert reference[0] == "2" and reference[1].startswith("0.600 [")
+    assert reference[2].startswith("0.500 [") and reference[3:5] == ["0.200", "0 of 3"]
+    # Of 0.3 to 0.8 the middle half; the mean of 0.8 and 0.4; 0.5 on gathering, 1 on sorting.
+    assert her[1].startswith("0.450 [") and her[2].startswith("0.600 [")
+    assert her[3:5] == ["0.300", "0 of 4"] and her[5].startswith("0.750 [")
 
 
 def test_single_seeds_have_no_interval(tmp_path):
     page = report(tmp_path, {("gathering", "ddqn_rtg"): ([0.9],), ("gathering", "her"): ([0.5],)})
-    assert table_row(page, "her", POOLED) == ["1", "1", "0.50", "0.00"]
+    assert table_row(page, "her", POOLED) == ["1", "0.500", "0.500", "0.500", "0 of 1", "0.000"]
 
 
 def test_domain_randomisation_is_compared_with_nothing(tmp_path):

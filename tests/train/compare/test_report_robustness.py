@@ -27,6 +27,7 @@ def evaluation(success: float) -> list[dict[str, Any]]:
         row("friction", "x 1.3", 1.3, success - 0.2),
         row("objects moved", "by up to 2 m", 2.0, 0.5),
         row("objects moved", "by up to 1 m", 1.0, 0.75),
+        row("objects moved", "by up to 0 m", 0.0, 1.0),
         row("objects turned", "by up to 1 rad", 1.0, None),
     ]
 
@@ -48,10 +49,10 @@ def section(page: str) -> str:
 def test_a_row_has_mean_and_deviation_of_the_runs_that_were_evaluated(tmp_path: Path) -> None:
     written(tmp_path)
     lines = section(write_report(tmp_path, tmp_path / "out").read_text()).splitlines()
-    assert "| gathering |  | `ddqn_rtg` (2) |" in lines
+    assert "| gathering |  | `ddqn_rtg` (2 × 100) |" in lines
     assert "| as trained |  | 0.90 ± 0.14 |" in lines
     assert "| friction | x 1.3 | 0.70 ± 0.14 |" in lines
-    assert not any("objects turned" in line for line in lines), "which was not possible"
+    assert "| objects turned | by up to 1 rad | not possible |" in lines
     assert "![Success on gathering where it was not trained](robustness_gathering.png)" in lines
 
 
@@ -62,7 +63,7 @@ def test_lines_go_through_what_was_trained_in_the_order_of_the_amounts(
     write_report(tmp_path, tmp_path / "out")
     (figure,) = (f for f in figures if f.axes[0].get_xlabel() == "objects moved by up to [m]")
     moved, turned, _, friction, *_ = [axis.get_lines()[0] for axis in figure.axes]
-    assert moved.get_xydata().tolist() == [[1.0, 0.75], [2.0, 0.5]]
+    assert moved.get_xydata().tolist() == [[0.0, 1.0], [1.0, 0.75], [2.0, 0.5]]
     assert turned.get_xydata().tolist() == [[0.0, 0.9]]
     assert np.allclose(friction.get_xydata(), [[0.7, 0.8], [1.0, 0.9], [1.3, 0.7]])
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -31,6 +32,11 @@ def interquartile_mean(scores: Scores) -> float:
     ordered = np.sort(np.concatenate(scores))
     cut = len(ordered) // 4
     return float(ordered[cut : len(ordered) - cut].mean())
+
+
+def task_mean(scores: Scores) -> float:
+    """Returns the mean over the tasks of the mean of each task."""
+    return float(np.mean([task.mean() for task in scores]))
 
 
 def probability_of_improvement(scores: Scores, others: Scores) -> float:
@@ -89,13 +95,37 @@ def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] 
     )
 
 
-def first_reach(success: Floats, threshold: float) -> int | None:
-    """Returns the index of the first evaluation with `success` >= `threshold`; None if none has.
+def rank_test(values: Floats, others: Floats) -> float:
+    """Returns how likely `values` are as small beside `others` as they are, or smaller, by chance.
 
-    `success`: [evaluations].
+    It is the one-sided p-value of the exact rank test [Mann and Whitney 1947]: the share of all
+    ways to divide the numbers into groups of these sizes whose rank sum is as low. Equal numbers
+    have the mean of their ranks; infinite ones are equal.
     """
-    reached = np.flatnonzero(success >= threshold)
-    return int(reached[0]) if len(reached) else None
+    pooled = np.concatenate([values, others])
+    ranks = [
+        int(2 * (pooled < x).sum() + (pooled == x).sum()) for x in pooled
+    ]  # twice each, less 1
+    ways = [
+        Counter({0: 1}),
+        *(Counter[int]() for _ in values),
+    ]  # by rank sum, for 0, 1, ... numbers
+    for rank in ranks:
+        for size in range(len(values), 0, -1):
+            for total, count in ways[size - 1].items():
+                ways[size][total + rank] += count
+    low = sum(ranks[: len(values)])
+    return sum(n for total, n in ways[-1].items() if total <= low) / ways[-1].total()
+
+
+def first_reach(success: Floats, threshold: float) -> int | None:
+    """Returns the index of the first of two values in a row with `success` >= `threshold`.
+
+    Returns None if there are none. One value alone may be luck. `success`: [values].
+    """
+    reached = success >= threshold
+    both = np.flatnonzero(reached[:-1] & reached[1:])
+    return int(both[0]) if len(both) else None
 
 
 def carried_forward(interactions: Floats, values: Floats, grid: Floats) -> Floats:

@@ -27,8 +27,9 @@ def merged(reports: Sequence[Report]) -> Report:
     counts = [report["transitions"] for report in reports]
     for key in _SHARES:
         found[key] = _mean([report[key] for report in reports], counts)
-    states = sum(report["transitions"] / report["headings_per_state"] for report in reports)
-    found["headings_per_state"] = found["transitions"] / states
+    with_data = [report for report in reports if report["transitions"]]
+    states = sum(report["transitions"] / report["headings_per_state"] for report in with_data)
+    found["headings_per_state"] = found["transitions"] / states if states else 0.0
     depths = [start["depth"] for start in found["starts"] if start["depth"] is not None]
     found["start_depth"] = _quantile(depths, 0.5) if depths else None
     for name, values in _QUANTILES.items():
@@ -51,7 +52,8 @@ def _sum(values: Sequence[Any]) -> Any:
 
 
 def _mean(values: Sequence[float], weights: Sequence[int]) -> float:
-    return sum(v * w for v, w in zip(values, weights, strict=True)) / sum(weights)
+    total = sum(weights)
+    return sum(v * w for v, w in zip(values, weights, strict=True)) / total if total else 0.0
 
 
 def _quantile(values: Sequence[float], share: float) -> float:

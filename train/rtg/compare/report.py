@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 from rtg import paths
+from rtg.compare import report_costs as costs
 from rtg.compare import report_robustness as robustness
-from rtg.compare import report_sources as sources
 from rtg.compare import report_tables as tables
 from rtg.compare.cells import Grid
 from rtg.compare.estimates import RESAMPLES
@@ -20,29 +19,33 @@ from rtg.files import own_data, replay_gaps
 
 _LEGEND = f"""\
 Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
-starts, objects jittered by `task.start_jitter`, that nothing was chosen by; **length**: pushes of
-its episodes, failures included; **roll-outs**: of the last 100 training episodes from the starts of
-the task, exploration included; **at ⅓**: greedy success at a third of the budget, from other
-held-out starts, or the final one of a run that had ended by then; **to 0.70**, **to {THRESHOLD}**:
-thousand interactions until the first evaluation with that greedy success ("2 of 3": so many of the
-seeds ever), and **pushes** (in thousands) and **CPU s** of the whole run until then. Exploration
-falls over a share of the budget (`train.epsilon_share`), so that these depend on the budget. Pushes
-are those of the simulator for data, starts, interactions and plans, those of evaluations left out;
-CPU seconds are those of all threads, evaluations included (of several runs in one process, those of
-the run's thread). Methods without interactions have the rounds of learning here that so many would
-have brought. In the second table of a task, which says what the whole run cost, **transitions**,
-**pushes** and **interactions** are in thousands, and wall clock is that of generation on one core,
-of learning on what is named *learner* above. All figures are in [runs.csv](runs.csv), the learning
-curves in [curves.csv](curves.csv); in their pictures a run that ended early keeps its last value,
-and of more rows than there are methods those with swept settings are left out."""
+starts, objects jittered by `task.start_jitter`, that nothing was chosen by. In a state to which an
+episode returns, the policy takes the best action that it has not yet tried there, unless
+`train.leave_loops` is off. **length**: pushes of its episodes, failures included; **roll-outs**: of
+the last 100 training episodes from the starts of the task, exploration included; **at ⅓**: greedy
+success at a third of the budget, from other held-out starts, or the final one of a run that had
+ended by then; **to 0.70**, **to {THRESHOLD}**: thousand interactions until the first of two
+evaluations in a row with that greedy success, the final one counted as the last ("2 of 3": so many
+of the seeds ever), and **pushes** (in thousands) and **CPU s** of the whole run until then.
+Exploration falls over a share of the budget (`train.epsilon_share`), so that these depend on the
+budget. Pushes are those of the forward simulator for data, starts, interactions and plans. CPU
+seconds are those of all threads (of several runs in one process, those of the run's thread). Both
+leave out evaluations, but for the CPU seconds of learning in the second table. Methods without
+interactions have the rounds of learning here that so many would have brought. In the second table
+of a task, which says what the whole run cost, **transitions**, **pushes** and **interactions** are
+in thousands, and wall clock is that of generation on one core, of learning on what is named
+*learner* above. All figures are in [runs.csv](runs.csv), the learning curves in
+[curves.csv](curves.csv); in their pictures a run that ended early keeps its last value, and of more
+rows than there are methods those with swept settings are left out."""
 _POOLED = f"""\
-IQM: mean of the middle half of all final successes (of fewer than four, of all), with a 95 %
-interval by stratified bootstrap (seeds drawn within a task, {RESAMPLES:,} resamples), over the
-tasks that more than one method was run on, if any. Last column: the probability that a run of the
-method does better than one of `{REFERENCE}` on the same task, mean over the tasks, equal ones
-counted half. Single seeds have no interval, and of few it is too narrow. Methods with fewer tasks
-are not comparable with those with more, nor is `{RANDOMISED}` with any: its starts, also those it
-is measured from, lie all over a wider region."""
+IQM: mean of the final successes without the lowest and the highest quarter of them, over the tasks
+that more than one method was run on, if any; mean: that of the tasks' means; both with a 95 %
+interval by stratified bootstrap (seeds drawn within a task, {RESAMPLES:,} resamples), which does
+not cover the choice of the starts, the same for all runs; lowest: of all runs. Last column: the
+probability that a run of the method does better than one of `{REFERENCE}` on the same task, mean
+over the tasks, equal ones counted half. Single seeds have no interval, and of few it is too narrow.
+Methods with fewer tasks are not comparable with those with more, nor is `{RANDOMISED}` with any:
+its starts, also those it is measured from, lie all over a wider region."""
 _PROFILES = "Share of a method's runs with at least that final success, mean over the tasks:"
 REMARKS = "remarks.md"  # beside grid.json
 _QUICK = (
@@ -50,10 +53,9 @@ _QUICK = (
 )
 _RUNTIME = """\
 CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
-pushes, the share of the solves that converged, iterations of those that moved an object;
-environment steps of the learner per second, evaluations included. The paper's Appendix E has
-51.0 ms for a backward action with joints and 39.6 ms without (the time of 48 in parallel on 16
-cores, divided by 48), and 1.07 ms for a forward one."""
+pushes, the share of the solves that converged, and of these of the ones that move an object, which
+take more of the time, and their iterations. The paper's figures (Appendix E) are wall time: of a
+backward action, that of 48 in parallel on 16 cores, divided by 48."""
 _DATA = f"""\
 **transitions**: stored, in thousands; **tree rows**: of them steps found backwards and kept;
 **branches**: outcomes of other headings in the same states; **headings per state**: distinct ones
@@ -68,27 +70,18 @@ own data and values beyond a success what its own Q says, so that these three ju
 method, not methods against each other."""
 
 
-def _listed(found: Iterable[str]) -> str:
-    """Returns the distinct values in `found`. If they differ, adds the number of runs of each."""
-    counts = Counter(found).most_common()
-    if len(counts) == 1:
-        return counts[0][0]
-    words = [f"{what} ({count} run{'' if count == 1 else 's'})" for what, count in counts]
-    return "; ".join(words) or "unknown"
+def _listed(name: str, done: Sequence[RunResult], of: Callable[[RunResult], str]) -> str:
+    """Returns the line on what `of` says of the runs. If it differs, adds the runs of each.
 
-
-def _commits(done: Sequence[RunResult]) -> str:
-    """Returns the line on the commit of the runs. If commits differ, adds the runs of each.
-
-    The difference between runs of different commits may not come from the methods.
+    The difference between runs of different commits or machines may not come from the methods.
     """
     found: dict[str, list[RunResult]] = {}
     for run in done:
-        found.setdefault(run.commits, []).append(run)
+        found.setdefault(of(run), []).append(run)
     if len(found) < 2:
-        return "- commit: " + (next(iter(found), "unknown"))
+        return f"- {name}: " + (next(iter(found), "unknown"))
     lines = [f"  - {words}: {tables.run_names(runs)}" for words, runs in found.items()]
-    return "\n".join(["- commits, whose runs may differ by more than the method:", *lines])
+    return "\n".join([f"- {name}, not the same for all runs:", *lines])
 
 
 def _machine(versions: dict[str, Any]) -> str:
@@ -126,11 +119,11 @@ def _origin(grid: Grid, comparison: Comparison) -> str:
         [
             *lines,
             "",
-            _commits(done),
-            f"- machine: {_listed(_machine(run.versions) for run in done)}",
+            _listed("commit", done, lambda run: run.commits),
+            _listed("machine", done, lambda run: _machine(run.versions)),
             *_given_data(done),
-            f"- learner: {_listed(_learner(run.summary) for run in done)}",
-            f"- with: {_listed(_programs(run.versions) for run in done)}",
+            _listed("learner", done, lambda run: _learner(run.summary)),
+            _listed("with", done, lambda run: _programs(run.versions)),
         ]
     )
 
@@ -166,17 +159,48 @@ def _described(words: str, picture: list[str]) -> list[str]:
     return [words, *picture] if picture else []
 
 
+def _numbers(values: Iterable[float]) -> str:
+    return " or ".join(f"{value:,}" for value in sorted(set(values)))
+
+
+def _budget(runs: Sequence[RunResult]) -> list[str]:
+    """Returns a line on how long runs learn, and how they are evaluated."""
+    learners = [run.train for run in runs if run.train is not None and not run.is_planned]
+    if not learners:
+        return []
+    early = sum(run.ended_early for run in runs)
+    final = [run.summary["final_episodes"] for run in runs if run.summary.get("final_episodes")]
+    return [
+        f"Budget: {_numbers(one.interactions for one in learners)} interactions, an evaluation "
+        f"every {_numbers(one.eval_every for one in learners)} from "
+        f"{_numbers(one.eval_episodes for one in learners)} starts, the final one from "
+        f"{_numbers(final) or 'as many'}. Before the budget, as their success was enough, ended "
+        f"{early or 'none'} of the {len(learners)} runs."
+    ]
+
+
 def _task_section(folder: Path, comparison: Comparison, task: str) -> list[str]:
+    done = [run for run in comparison.all_done() if run.cell.task == task]
     return [
         f"## {task}",
+        *_budget(done),
         tables.results_table(comparison, task),
         tables.cost_table(comparison, task),
         *_picture(folder, f"costs_{task}.png", f"Success against cost on {task}"),
         *_picture(folder, f"curves_{task}.png", f"Learning curves on {task}"),
         *_picture(folder, f"sweep_{task}.png", f"What the swept values do on {task}"),
-        *_picture(folder, f"strip_{task}.png", f"An episode of {task} in pictures"),
+        *_picture(
+            folder, f"strip_{task}.png", f"The shortest successful episode of {task} in pictures"
+        ),
         *_picture(folder, f"film_{task}.gif", f"The same episode of {task} as a film"),
     ]
+
+
+def _cost_section(comparison: Comparison) -> list[str]:
+    """Returns the section that compares costs with the reference; [] without other labels."""
+    if not costs.has_comparison(comparison):
+        return []
+    return [f"## Beside `{REFERENCE}`", costs.cost_comparison(comparison), costs.NOTE]
 
 
 def _robustness_section(folder: Path, comparison: Comparison) -> list[str]:
@@ -212,15 +236,14 @@ def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> st
         f"Written by `{paths.COMMAND} plot` from the folders of these runs and `{REMARKS}`.",
         *([_QUICK] if any("--quick" in command.split() for command in grid.commands) else []),
         _origin(grid, comparison),
+        *_trouble_section(grid, comparison.results),
         _LEGEND + (f" Not run: {missing}." if missing else ""),
         *(part for task in comparison.tasks for part in _task_section(folder, comparison, task)),
         "## All tasks together",
         tables.pooled_table(comparison),
         _POOLED,
         *_described(_PROFILES, _picture(folder, "profiles.png", "Performance profiles")),
-        "## Where reverse simulation is the better source",
-        sources.better_source(comparison),
-        sources.NOTE,
+        *_cost_section(comparison),
         "## Run time",
         tables.runtime_table(comparison),
         _RUNTIME,
@@ -230,6 +253,5 @@ def report(folder: Path, grid: Grid, comparison: Comparison, remarks: str) -> st
         *_picture(folder, "replay_gap.png", "Histogram of the replay gap"),
         *_robustness_section(folder, comparison),
         *(["## Remarks", remarks] if remarks else []),
-        *_trouble_section(grid, comparison.results),
     ]
     return "\n\n".join(parts) + "\n"

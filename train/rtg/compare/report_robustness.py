@@ -16,11 +16,12 @@ from rtg.learn.robustness import AS_TRAINED
 from rtg.pictures import plots
 
 NOTE = """\
-Success of the final policies (`./run.sh evaluate`), means ± standard deviations over the seeds:
-from other starts, with Gaussian noise on the poses that the policy sees, with friction of all
-bodies, masses of the objects or strides multiplied, with bodies that coast after a push, in other
-simulators. Starts outside the arena, or in which bodies overlap, are drawn anew. `ddqn_rtg_dr` has
-its own, wider starts in all rows but those of moved objects."""
+Success of the final policies (`./run.sh evaluate`), means ± standard deviations over the seeds (in
+brackets how many, and of how many episodes each): from other starts, with Gaussian noise on the
+poses that the policy sees, with friction of all bodies, masses of the objects or strides
+multiplied, with bodies that coast after a push, in other simulators, if these are installed and
+have what the task needs. Starts outside the arena, or in which bodies overlap, are drawn anew.
+`ddqn_rtg_dr` has its own, wider starts in all rows but those of moved objects."""
 # Groups of variants that the picture shows, with the name of their axis, and the amount as trained.
 PANELS = (
     ("objects moved", "objects moved by up to [m]", None),
@@ -58,19 +59,31 @@ def robustness_table(comparison: Comparison, task: str) -> str:
     }
     variants = dict.fromkeys(variant for runs in found.values() for run in runs for variant in run)
     rows = [
-        [*variant, *(spread([run.get(variant) for run in runs], ".2f") for runs in found.values())]
+        [*variant, *(_cell([run.get(variant) for run in runs]) for runs in found.values())]
         for variant in variants
     ]
-    heads = [f"`{label}` ({len(runs)})" for label, runs in found.items()]
-    shown = [row for row in rows if any(cell != NO_VALUE for cell in row[2:])]
-    return table([task, "", *heads], shown, left=2)
+    heads = [_head(label, runs) for label, runs in _evaluated(comparison, task).items()]
+    return table([task, "", *heads], rows, left=2)
+
+
+def _cell(successes: Sequence[float | None]) -> str:
+    words = spread(successes, ".2f")
+    return "not possible" if words == NO_VALUE else words
+
+
+def _head(label: str, runs: Sequence[RunResult]) -> str:
+    episodes = sorted({row["episodes"] for run in runs for row in run.evaluation})
+    return f"`{label}` ({len(runs)} × {' or '.join(map(str, episodes))})"
 
 
 def _line(rows: Sequence[Mapping[str, Any]], group: str, trained: float | None) -> dict[float, Any]:
     """Returns the success of one run by the amount of a group of variants."""
     amounts = {group: None, AS_TRAINED: trained}
     shown = [row for row in rows if row["group"] in amounts]
-    by_amount = {row["amount"] or amounts[row["group"]]: row["success"] for row in shown}
+    by_amount = {
+        amounts[row["group"]] if row["amount"] is None else row["amount"]: row["success"]
+        for row in shown
+    }
     return {amount: success for amount, success in by_amount.items() if amount is not None}
 
 

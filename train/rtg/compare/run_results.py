@@ -45,7 +45,8 @@ class RunResult:
     state: str  # done, failed, generation only, unfinished, not run
     summary: dict[str, Any]  # summary.json; this and the next two are {} unless done
     versions: dict[str, Any]
-    # Columns of progress.csv [N]; `pushes` and `cpu_s` include those of the generation.
+    # Columns of progress.csv [N]; `pushes` and `cpu_s` are with those of the generation, and
+    # without those of evaluations.
     curve: dict[str, Floats]
     train: _core.TrainConfig | None  # None unless the run is done
     evaluation: Sequence[Mapping[str, Any]] = ()  # the rows of evaluation.json, if there is one
@@ -62,6 +63,17 @@ class RunResult:
         interactions of as many rounds with interactions.
         """
         return self.train is not None and self.train.interact
+
+    @property
+    def is_planned(self) -> bool:
+        """Returns whether nothing is learned: the run searches anew from each start."""
+        return self.train is not None and self.train.learner == "planning"
+
+    @property
+    def ended_early(self) -> bool:
+        """Returns whether training ended before the budget, as its success was enough."""
+        budget = self.train.interactions if self.train is not None and self.interacts else 0
+        return bool(self.summary["interactions"] < budget)
 
     @property
     def commit(self) -> str | None:
@@ -108,7 +120,7 @@ class RunResult:
         Returns None if there is none. If the run ended within that third, returns the success of
         the final evaluation, because chance success may have ended the run.
         """
-        if not self.curve or self.train is None:
+        if not self.curve or self.train is None or self.is_planned:
             return None
         third = self.train.interactions / 3
         within = self.curve["interactions"] <= third
@@ -118,13 +130,15 @@ class RunResult:
         return float(known[-1]) if len(known) else None
 
     def cost_to_reach(self, threshold: float, cost: str = COSTS[0]) -> float | None:
-        """Returns the cost at the first evaluation with a greedy success of at least `threshold`.
+        """Returns the cost at the first of two evaluations in a row that reach `threshold`.
 
-        Returns None if there is none.
+        The final evaluation counts as the last one. Returns None if there are no such two, or if
+        nothing is learned.
         """
-        if not self.curve:
+        if not self.curve or self.is_planned:
             return None
-        first = first_reach(self.curve["success_rate"], threshold)
+        success = np.append(self.curve["success_rate"], self.summary["success_rate"])
+        first = first_reach(success, threshold)
         return None if first is None else costs(self.curve, cost)[first]
 
 
@@ -187,9 +201,11 @@ def read_evaluation(run: Path) -> list[dict[str, Any]]:
     if not file.is_file():
         return []
     with fields_of(file):
-        rows = [{"amount": None, **row} for row in read_json(file)["rows"]]
+        found = read_json(file)
+        rows = [{"amount": None, "episodes": found["episodes"], **row} for row in found["rows"]]
         for row in rows:
-            texts, numbers = [row["group"], row["label"]], [row["success"], row["amount"]]
+            texts = [row["group"], row["label"]]
+            numbers = [row["success"], row["amount"], row["episodes"]]
             if not all(isinstance(text, str) for text in texts):
                 raise TypeError(f"a row is named {texts!r}")
             if not all(isinstance(number, int | float | None) for number in numbers):
@@ -207,7 +223,7 @@ def _state_without_result(run: Path) -> str:
 
 
 def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
-    """Reads progress.csv and adds the costs of the generation to those of the learner.
+    """Reads progress.csv, adds the costs of the generation, and takes those of evaluations out.
 
     Returns {} without evaluations. Raises UserError if the file is damaged.
     """
@@ -216,8 +232,11 @@ def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
         return {}
     if not {*COSTS, *CURVE_COLUMNS} <= curve.keys():
         raise UserError(f"{progress}: lacks columns; legal: the file as the run wrote it")
-    generation_costs = {"pushes": summary.get("replays"), "cpu_s": summary.get("generate_cpu_s")}
-    return curve | {cost: curve[cost] + (extra or 0) for cost, extra in generation_costs.items()}
+    evaluations = np.nan_to_num(curve.get("evaluation_cpu_s", np.array(0.0)))
+    return curve | {
+        "pushes": curve["pushes"] + (summary.get("replays") or 0),
+        "cpu_s": curve["cpu_s"] - evaluations + (summary.get("generate_cpu_s") or 0.0),
+    }
 
 
 def _method_order(cell: Cell) -> int:
