@@ -1,10 +1,10 @@
 """The README and the pages of docs/: what stands there as code is legal, and runs."""
 
 import ast
+import csv
 import importlib
 import importlib.util
 import itertools
-import json
 import os
 import re
 import shlex
@@ -212,12 +212,13 @@ def rows_of(page: Path) -> dict[str, list[str]]:
 
 def figures(report: str) -> dict[str, tuple[str, str]]:
     """Returns success and thousand interactions to 0.95 of ddqn_rtg, means of seeds, by task."""
-    text = (paths.ROOT / "docs" / "results" / report / "report.json").read_text()
+    with (paths.ROOT / "docs" / "results" / report / "runs.csv").open() as file:
+        of_method = [run for run in csv.DictReader(file) if run["method"] == "ddqn_rtg"]
     found = {}
-    for task, methods in json.loads(text).items():
-        runs = methods["ddqn_rtg"]
-        success = statistics.mean(run["success_rate"] for run in runs)
-        known = [run["interactions_to_95"] for run in runs if run["interactions_to_95"]]
+    for task, group in itertools.groupby(of_method, lambda run: run["task"]):
+        runs = list(group)
+        success = statistics.mean(float(run["success_rate"]) for run in runs)
+        known = [float(to) for run in runs if (to := run["interactions_to_95"])]
         few = "" if len(known) == len(runs) else f" ({len(known)} of {len(runs)})"
         found[task] = f"{success:.2f}", f"{statistics.mean(known) / 1000:.0f}{few}"
     return found

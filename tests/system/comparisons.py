@@ -67,6 +67,12 @@ def wait_for(condition, process):
         time.sleep(0.02)
 
 
+def rows(folder):
+    """A dictionary for each run, from the table for programs."""
+    with (folder / "runs.csv").open() as file:
+        return list(csv.DictReader(file))
+
+
 def figures(folder):
     """All numbers of the tables of TWO tasks but those on how they were come by."""
     rows = []

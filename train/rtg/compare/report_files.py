@@ -167,10 +167,6 @@ def _draw_episode(out: Path, task: str, episode: ShownEpisode | None) -> None:
 
 
 def _write_numbers(out: Path, comparison: Comparison) -> None:
-    tasks: dict[str, dict[str, list[Any]]] = {task: {} for task in comparison.tasks}
-    for run in comparison.all_done():
-        tasks[run.cell.task].setdefault(run.cell.label, []).append(run.figures())
-    run_folder.write_text(out / "report.json", run_folder.plain_json(tasks))
     _write_csv(out / "runs.csv", _run_rows(comparison))
     _write_csv(
         out / "curves.csv", [row for run in comparison.all_done() for row in _curve_rows(run)]

@@ -95,7 +95,7 @@ class RunResult:
         return ", ".join([*words, f"transitions by `{generator}`"] if is_other else words)
 
     def figures(self) -> dict[str, Any]:
-        """Returns the entry of the run in report.json."""
+        """Returns the figures of the run that reports have, by name."""
         names = ("success_rate", "episode_length_mean", "rollout_success", "interactions")
         of_generation = ("transitions", "replays", "generate_cpu_s", "generate_wall_s")
         of_learner = ("train_cpu_s", "train_wall_s", "q_rank_correlation")
