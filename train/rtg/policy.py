@@ -50,10 +50,10 @@ class Policy:
 
         In a state to which an episode returns, the best action not yet tried there is taken.
         """
-        from rtg.learn.evaluation import FINAL_SEED, evaluate, held_out_starts
+        from rtg.learn.evaluation import evaluate, final_starts
 
         config = self.task.config_with([f"train.eval_episodes={episodes}"])
-        starts = held_out_starts(config, FINAL_SEED)
+        starts = final_starts(config, episodes)
         found = evaluate(config, self._values, starts, config.learner_discount)
         return float(found.success.mean())
 

@@ -14,6 +14,7 @@ from rtg.files.run_folder import write_json
 from rtg.learn.training_log import TrainingLog
 
 CONFIG = paths.CONFIG / "gathering.yaml"
+VERSIONS = {"git_revision": "abc", "git_modified": False, "processor": "Z80"}
 
 
 def row(interactions: int, success: float) -> dict[str, Any]:
@@ -22,6 +23,7 @@ def row(interactions: int, success: float) -> dict[str, Any]:
         "interactions": interactions,
         "pushes": interactions,
         "cpu_s": interactions / 100.0,
+        "evaluation_cpu_s": 0.0,
         "success_rate": success,
         "rollout_success": 0.9 * success,
         "episode_length_mean": 60.0 - 40.0 * success,
@@ -55,6 +57,10 @@ def summary_of(seed: int) -> dict[str, Any]:
         "branch_transitions": 96_000,
         "headings_per_state": 4.9,
         "trees": 12,
+        "device": "cpu",
+        "precision": "float32",
+        "runs_in_process": 1,
+        "final_episodes": 1000,
         "q_rank_correlation": 0.75,
         "q_error": 0.02,
         "q_spread": 0.07,
@@ -90,7 +96,7 @@ def finished(
         **more,
     }
     write_json(run / "summary.json", summary)
-    write_json(run / "versions.json", {"git_revision": "abc", "git_modified": False})
+    write_json(run / "versions.json", VERSIONS)
     budget = budget or 5000 * len(course)
     settings = [f"run.method={cell.method}", f"train.interactions={budget}"]
     config = _core.Config.from_file(CONFIG, overrides=settings)

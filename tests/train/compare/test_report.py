@@ -133,14 +133,14 @@ def test_the_third_of_a_run_that_ended_before_is_its_final_success(tmp_path):
 
 
 def test_the_budget_and_the_runs_that_did_not_use_it_up_are_told(tmp_path):
-    cells = [Cell("gathering", method, (), 1) for method in ("ddqn_rtg", "her", "planner")]
-    for cell, budget in zip(cells, (60_000, 15_000, 60_000), strict=True):
-        finished(tmp_path, cell, GOOD, budget=budget, final_episodes=1000)
+    methods = ("ddqn_rtg", "bc_rtg", "her", "planner")
+    cells = [Cell("gathering", method, (), 1) for method in methods]
+    for cell, budget in zip(cells, (60_000, 60_000, 15_000, 60_000), strict=True):
+        finished(tmp_path, cell, GOOD, budget=budget, final_episodes=20 if budget < 6e4 else 1000)
     write_grid(tmp_path, cells)
     words = " ".join(write_report(tmp_path, tmp_path).read_text().split())
     told = "Budget: 15,000 or 60,000 interactions, an evaluation every 2,500 from 100 starts, the "
-    assert told + "final one from 1,000. Before the budget" in words
-    assert "as their success was enough, ended 1 of the 2 runs." in words
+    assert told + "final one from 20 or 1,000. 2 of the 3 runs ended before, because" in words
 
 
 def test_transitions_of_another_commit_are_told(tmp_path):
@@ -158,13 +158,14 @@ def test_transitions_of_another_commit_are_told(tmp_path):
 
 def test_the_learners_are_named_and_a_run_without_gradient_steps_has_none(tmp_path):
     cells = [Cell("gathering", method, (), 1) for method in ("ddqn_rtg", "ddqn_naive", "planner")]
-    cpu = {"device": "cpu", "gradient_steps": 5}
+    cpu = {"gradient_steps": 5}
     for cell, more in zip(cells, (cpu, cpu, {"gradient_steps": 0}), strict=True):
         finished(tmp_path, cell, GOOD, **more)
     write_grid(tmp_path, cells)
     page = write_report(tmp_path, tmp_path).read_text()
-    learned = "  - cpu, one core: gathering `ddqn_naive` 1; gathering `ddqn_rtg` 1\n"
-    assert f":\n{learned}  - none: gathering `planner` 1\n" in page
+    learned = "  - cpu, float32, one core: gathering `ddqn_naive` 1; gathering `ddqn_rtg` 1\n"
+    of_planner = "  - none: gathering `planner` 1\n"
+    assert f"- learner, not the same for all runs:\n{learned}{of_planner}" in page
 
 
 def test_the_page_says_where_it_comes_from_and_shows_all_pictures(folder, page):

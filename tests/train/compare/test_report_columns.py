@@ -188,3 +188,11 @@ def test_a_planner_learns_nothing_that_could_take_time(tmp_path: Path) -> None:
     row = cells_of(results_table(read_comparison(tmp_path, read_grid(tmp_path)), "gathering"))
     of_time = ("at ⅓", "to 0.70", "to 0.95", "pushes to 0.95", "CPU s to 0.95")
     assert [row[name] for name in of_time] == ["–"] * 5
+
+
+def test_who_does_not_know_the_cost_is_not_said_never_to_get_there(tmp_path: Path) -> None:
+    cell = Cell("gathering", "ddqn_rtg", (), 1)
+    finished(tmp_path, cell, [0.96, 0.97], every={"evaluation_cpu_s": float("nan")})
+    write_grid(tmp_path, [cell])
+    row = cells_of(results_table(read_comparison(tmp_path, read_grid(tmp_path)), "gathering"))
+    assert (row["to 0.95"], row["CPU s to 0.95"]) == ("5.0", "–")

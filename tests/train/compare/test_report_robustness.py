@@ -80,6 +80,26 @@ def test_a_run_without_a_variant_is_told_and_has_no_point(
     assert figure.axes[3].get_lines()[0].get_xdata().tolist() == [0.7, 1.0]
 
 
+def test_a_variant_that_nobody_tried_is_not_said_to_be_impossible(tmp_path: Path) -> None:
+    written(tmp_path)
+    other = Cell("gathering", "her", (), 1)
+    finished(tmp_path, other, [0.5, 0.9])
+    few = {"episodes": 20, "rows": [r for r in evaluation(0.8) if r["group"] == "as trained"]}
+    write_json(tmp_path / other.name / "evaluation.json", few)
+    write_grid(tmp_path, [*CELLS, other])
+    lines = section(write_report(tmp_path, tmp_path / "out").read_text()).splitlines()
+    assert "| gathering |  | `ddqn_rtg` (2 × 100) | `her` (1 × 20) |" in lines
+    assert "| objects turned | by up to 1 rad | not possible | – |" in lines
+
+
+def test_evaluations_that_do_not_say_their_number_are_named(tmp_path: Path) -> None:
+    written(tmp_path)
+    file = tmp_path / CELLS[0].name / "evaluation.json"
+    write_json(file, {"episodes": None, "rows": evaluation(1.0)})
+    with pytest.raises(UserError, match=re.escape(str(file))):
+        write_report(tmp_path, tmp_path / "out")
+
+
 @pytest.mark.parametrize(
     "wrong",
     [row("friction", "x 2", 2.0, "0.9"), row("friction", "x 2", [2.0], 0.9), row("", 3, 2.0, 0.9)],

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 from rtg import _core
 from rtg.envs.training_environments import TrainingEnvironments
-from rtg.learn.evaluation import FINAL_FACTOR, final_starts, held_out_starts
+from rtg.learn.evaluation import final_starts, held_out_starts
 from training_runs import TINY
 
 COUNT = 300
@@ -34,9 +34,9 @@ def test_starts_of_search_training_and_evaluations_are_all_different() -> None:
     of = {f"search {seed}": of_search(seed) for seed in (1, 2)}
     of |= {f"training {seed}": of_training(seed) for seed in (1, 2)}
     of |= {f"evaluation {k}": held_out_starts(config, number=k) for k in (0, 1)}
-    of["the final one"] = final_starts(config)
+    of["the final one"] = final_starts(config, COUNT)
     places = {name: {start[1:, :2].tobytes() for start in starts} for name, starts in of.items()}
     for name, found in places.items():
-        assert len(found) == COUNT * (FINAL_FACTOR if name == "the final one" else 1), name
+        assert len(found) == COUNT, name
     for one, other in itertools.combinations(places, 2):
         assert not places[one] & places[other], f"{one}, {other}"

@@ -13,7 +13,7 @@ import pytest
 from rtg import _core
 from rtg.files.run_folder import read_json
 from rtg.learn import planning, trainer
-from rtg.learn.evaluation import FINAL_SEED, held_out_starts
+from rtg.learn.evaluation import final_starts
 from rtg.learn.offline_data import NoSource
 from rtg.learn.planning import Plan, Planning, evaluate_plans
 from rtg.processes.interrupts import Interrupts
@@ -66,7 +66,7 @@ def test_the_result_is_that_of_a_search_from_each_final_start(tmp_path: Path) ->
     folder = run_folder(tmp_path / "run", None, *NEAR)
     assert trainer.main([str(folder), "--no-stream"]) == 0
     config = _core.Config.from_file(folder / "config.yaml")
-    starts = held_out_starts(config, FINAL_SEED)
+    starts = final_starts(config, 8)
     states, pushes = zip(*(_core.plan(config, one[None]) for one in starts), strict=True)
     success = np.array([len(one) == 2 for one in states])  # a layer finds one action, or none
     assert 0 < success.sum() < 8
@@ -143,7 +143,7 @@ def test_a_signal_stops_it_between_starts_and_it_goes_on(
     assert len(asked) == 3 and not (cut / "training.json").exists()
     assert not json.loads((cut / "training_state.json").read_text())["done"]
     assert trainer.main([str(cut), "--no-stream", "--resume"]) == 0
-    starts = held_out_starts(_core.Config.from_file(cut / "config.yaml"), FINAL_SEED)
+    starts = final_starts(_core.Config.from_file(cut / "config.yaml"), 8)
     np.testing.assert_array_equal(asked, starts)
     assert result(cut) == result(whole)
     files = [(folder / "best_episode.npz").read_bytes() for folder in (whole, cut)]

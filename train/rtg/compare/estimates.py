@@ -96,25 +96,22 @@ def improvement_interval(scores: Scores, others: Scores) -> tuple[float, float] 
 
 
 def rank_test(values: Floats, others: Floats) -> float:
-    """Returns how likely `values` are as small beside `others` as they are, or smaller, by chance.
+    """Returns the one-sided p-value that `values` are smaller than `others`.
 
-    It is the one-sided p-value of the exact rank test [Mann and Whitney 1947]: the share of all
-    ways to divide the numbers into groups of these sizes whose rank sum is as low. Equal numbers
-    have the mean of their ranks; infinite ones are equal.
+    It is that of the exact rank test [Mann and Whitney 1947]: the share of all ways to divide the
+    numbers into groups of these sizes in which the rank sum of the first one is as low. Equal
+    numbers, infinite ones too, have the mean of their ranks.
     """
     pooled = np.concatenate([values, others])
-    ranks = [
-        int(2 * (pooled < x).sum() + (pooled == x).sum()) for x in pooled
-    ]  # twice each, less 1
-    ways = [
-        Counter({0: 1}),
-        *(Counter[int]() for _ in values),
-    ]  # by rank sum, for 0, 1, ... numbers
-    for rank in ranks:
+    # Twice the rank of each number, less 1: a whole number.
+    twice_ranks = [int(2 * (pooled < x).sum() + (pooled == x).sum()) for x in pooled]
+    # How many ways there are to choose 0, 1, ... numbers, by their sum of ranks.
+    ways = [Counter({0: 1}), *(Counter[int]() for _ in values)]
+    for rank in twice_ranks:
         for size in range(len(values), 0, -1):
             for total, count in ways[size - 1].items():
                 ways[size][total + rank] += count
-    low = sum(ranks[: len(values)])
+    low = sum(twice_ranks[: len(values)])
     return sum(n for total, n in ways[-1].items() if total <= low) / ways[-1].total()
 
 

@@ -7,55 +7,58 @@ from pathlib import Path
 from typing import Any
 
 from rtg import paths
-from rtg.compare import report_costs as costs
 from rtg.compare import report_robustness as robustness
 from rtg.compare import report_tables as tables
 from rtg.compare.cells import Grid
 from rtg.compare.estimates import RESAMPLES
 from rtg.compare.methods import RANDOMISED, REFERENCE
+from rtg.compare.report_costs import NOTE as COST_NOTE
+from rtg.compare.report_costs import cost_comparison
 from rtg.compare.run_results import THRESHOLD, Comparison, RunResult
 from rtg.errors import UserError
 from rtg.files import own_data, replay_gaps
 
 _LEGEND = f"""\
 Means ± standard deviations over the seeds. **success**: of the final greedy policy from held-out
-starts, objects jittered by `task.start_jitter`, that nothing was chosen by. In a state to which an
-episode returns, the policy takes the best action that it has not yet tried there, unless
-`train.leave_loops` is off. **length**: pushes of its episodes, failures included; **roll-outs**: of
-the last 100 training episodes from the starts of the task, exploration included; **at ⅓**: greedy
-success at a third of the budget, from other held-out starts, or the final one of a run that had
-ended by then; **to 0.70**, **to {THRESHOLD}**: thousand interactions until the first of two
-evaluations in a row with that greedy success, the final one counted as the last ("2 of 3": so many
-of the seeds ever), and **pushes** (in thousands) and **CPU s** of the whole run until then.
-Exploration falls over a share of the budget (`train.epsilon_share`), so that these depend on the
-budget. Pushes are those of the forward simulator for data, starts, interactions and plans. CPU
-seconds are those of all threads (of several runs in one process, those of the run's thread). Both
-leave out evaluations, but for the CPU seconds of learning in the second table. Methods without
-interactions have the rounds of learning here that so many would have brought. In the second table
-of a task, which says what the whole run cost, **transitions**, **pushes** and **interactions** are
-in thousands, and wall clock is that of generation on one core, of learning on what is named
-*learner* above. All figures are in [runs.csv](runs.csv), the learning curves in
-[curves.csv](curves.csv); in their pictures a run that ended early keeps its last value, and of more
-rows than there are methods those with swept settings are left out."""
+starts, objects jittered by `task.start_jitter`, that no earlier evaluation has used. In a state
+to which an episode returns, the policy takes the best action that it has not yet tried there,
+unless `train.leave_loops` is off. **length**: pushes of its episodes, failures included;
+**roll-outs**: of the last 100 training episodes from the starts of the task, exploration
+included; **at ⅓**: greedy success at a third of the budget, from other held-out starts, or the
+final one of a run that had ended by then; **to 0.70**, **to {THRESHOLD}**: thousand interactions
+until the first of two evaluations in a row with that greedy success, the final one counted as
+the last ("2 of 3": so many of the seeds ever), and **pushes** (in thousands) and **CPU s** of
+the whole run until then. Exploration falls over a share of the budget (`train.epsilon_share`),
+so that these depend on the budget. Pushes are those of the forward simulator for data, starts,
+interactions and plans. CPU seconds are those of all threads (of several runs in one process,
+those of the run's thread). Both leave out evaluations, but for the CPU seconds of learning in
+the second table. Methods without interactions have the rounds of learning here that so many
+would have brought. In the second table of a task, which says what the whole run cost,
+**transitions**, **pushes** and **interactions** are in thousands, and wall clock is that of
+generation on one core, of learning on what is named *learner* above. All figures are in
+[runs.csv](runs.csv), the learning curves in [curves.csv](curves.csv); in their pictures a run
+that ended early keeps its last value, and of more rows than there are methods those with swept
+settings are left out. Strips and films show the shortest successful episode of the final
+evaluations, of `{REFERENCE}` if it has one."""
 _POOLED = f"""\
-IQM: mean of the final successes without the lowest and the highest quarter of them, over the tasks
-that more than one method was run on, if any; mean: that of the tasks' means; both with a 95 %
-interval by stratified bootstrap (seeds drawn within a task, {RESAMPLES:,} resamples), which does
-not cover the choice of the starts, the same for all runs; lowest: of all runs. Last column: the
-probability that a run of the method does better than one of `{REFERENCE}` on the same task, mean
-over the tasks, equal ones counted half. Single seeds have no interval, and of few it is too narrow.
-Methods with fewer tasks are not comparable with those with more, nor is `{RANDOMISED}` with any:
-its starts, also those it is measured from, lie all over a wider region."""
+IQM: mean of the final successes without the lowest and the highest quarter of them, over the
+tasks that more than one method was run on, if any; mean: that of the tasks' means; both with a
+95 % interval by stratified bootstrap (seeds drawn within a task, {RESAMPLES:,} resamples), which
+does not cover the choice of the starts, the same for all runs; lowest: of all runs. Last column:
+the probability that a run of the method does better than one of `{REFERENCE}` on the same task,
+mean over the tasks, equal ones counted half. Single seeds have no interval, and of few it is too
+narrow. Methods with fewer tasks are not comparable with those with more, nor is `{RANDOMISED}`
+with any: its starts, also those it is measured from, lie all over a wider region."""
 _PROFILES = "Share of a method's runs with at least that final success, mean over the tasks:"
 REMARKS = "remarks.md"  # beside grid.json
 _QUICK = (
     "**Small budgets (`--quick`): these figures show that everything works and are no results.**"
 )
 _RUNTIME = """\
-CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves and
-pushes, the share of the solves that converged, and of these of the ones that move an object, which
-take more of the time, and their iterations. The paper's figures (Appendix E) are wall time: of a
-backward action, that of 48 in parallel on 16 cores, divided by 48."""
+CPU time per reverse solve that was not pruned, and per push of the simulator; how many solves
+and pushes, the share of the solves that converged, and of these of the ones that move an object,
+which take more of the time, and their iterations. The paper's figures (Appendix E) are wall
+time: of a backward action, that of 48 in parallel on 16 cores, divided by 48."""
 _DATA = f"""\
 **transitions**: stored, in thousands; **tree rows**: of them steps found backwards and kept;
 **branches**: outcomes of other headings in the same states; **headings per state**: distinct ones
@@ -164,18 +167,19 @@ def _numbers(values: Iterable[float]) -> str:
 
 
 def _budget(runs: Sequence[RunResult]) -> list[str]:
-    """Returns a line on how long runs learn, and how they are evaluated."""
-    learners = [run.train for run in runs if run.train is not None and not run.is_planned]
-    if not learners:
+    """Returns a line on how long runs learn, and how they are evaluated; [] if none learns."""
+    learners = [run for run in runs if not run.is_planned]
+    settings = [run.train for run in learners if run.train is not None]
+    if not settings:
         return []
-    early = sum(run.ended_early for run in runs)
-    final = [run.summary["final_episodes"] for run in runs if run.summary.get("final_episodes")]
+    final = _numbers(run.summary.get("final_episodes") or 0 for run in learners)
+    early = sum(run.ended_early for run in learners)
     return [
-        f"Budget: {_numbers(one.interactions for one in learners)} interactions, an evaluation "
-        f"every {_numbers(one.eval_every for one in learners)} from "
-        f"{_numbers(one.eval_episodes for one in learners)} starts, the final one from "
-        f"{_numbers(final) or 'as many'}. Before the budget, as their success was enough, ended "
-        f"{early or 'none'} of the {len(learners)} runs."
+        f"Budget: {_numbers(one.interactions for one in settings)} interactions, an evaluation "
+        f"every {_numbers(one.eval_every for one in settings)} from "
+        f"{_numbers(one.eval_episodes for one in settings)} starts, the final one from "
+        f"{final if final != '0' else 'as many'}. {early or 'None'} of the {len(learners)} runs "
+        "ended before, because their success was enough."
     ]
 
 
@@ -189,18 +193,15 @@ def _task_section(folder: Path, comparison: Comparison, task: str) -> list[str]:
         *_picture(folder, f"costs_{task}.png", f"Success against cost on {task}"),
         *_picture(folder, f"curves_{task}.png", f"Learning curves on {task}"),
         *_picture(folder, f"sweep_{task}.png", f"What the swept values do on {task}"),
-        *_picture(
-            folder, f"strip_{task}.png", f"The shortest successful episode of {task} in pictures"
-        ),
+        *_picture(folder, f"strip_{task}.png", f"An episode of {task} in pictures"),
         *_picture(folder, f"film_{task}.gif", f"The same episode of {task} as a film"),
     ]
 
 
 def _cost_section(comparison: Comparison) -> list[str]:
     """Returns the section that compares costs with the reference; [] without other labels."""
-    if not costs.has_comparison(comparison):
-        return []
-    return [f"## Beside `{REFERENCE}`", costs.cost_comparison(comparison), costs.NOTE]
+    shown = cost_comparison(comparison)
+    return [f"## Beside `{REFERENCE}`", shown, COST_NOTE] if shown else []
 
 
 def _robustness_section(folder: Path, comparison: Comparison) -> list[str]:

@@ -3,36 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rtg.compare.estimates import rank_test
 from rtg.compare.methods import RANDOMISED, REFERENCE
-from rtg.compare.report_tables import NO_VALUE, is_randomised, spread, table, thousands
+from rtg.compare.report_tables import NO_VALUE, is_randomised, mean_success, table
 from rtg.compare.run_results import COSTS, THRESHOLD, Comparison, RunResult
 
 Floats = NDArray[np.float64]
+Runs = Sequence[RunResult]
 
-CHANCE = 0.05  # a difference is told where chance makes one as clear no more often
+CHANCE = 0.05  # p-value up to which a difference is told, in each direction
 _COST_NAMES = {"interactions": "Interactions", "pushes": "Pushes", "cpu_s": "CPU seconds"}
 _COST_HEADS = {"interactions": "interactions [1000]", "pushes": "pushes [1000]", "cpu_s": "CPU [s]"}
+_UNITS = {"interactions": 1000.0, "pushes": 1000.0, "cpu_s": 1.0}
 _FEWER, _MORE, _LEVEL = "fewer than", "more than", "not told apart from"
+_FEW = "too few seeds to tell from"
 NOTE = f"""\
 Costs of the whole run, generation included and evaluations left out, until the policy solves
-{THRESHOLD}: of `{REFERENCE}` as mean ± standard deviation of the seeds; of the others as multiples,
-median by median, with how many seeds get there if not all do. A median that never gets there has no
-multiple. **Bold**: cheaper or dearer than `{REFERENCE}` by an exact rank test of the seeds, in
-which one that never gets there costs more than any that does; chance makes a difference as clear in
-no more than {100 * CHANCE:.0f} % of comparisons (one-sided: three seeds against three must not
-overlap at all, and single seeds never suffice). With many rows some will be bold by chance. CPU
-seconds are compared only on one kind of processor. Pushes are those of the forward simulator;
-reverse solves are in the table of run times. `planner` searches anew from every start: its costs
-are those of one start, and in brackets is after how many starts they exceed those of `{REFERENCE}`.
-`{RANDOMISED}` is left out, as its starts are others."""
+{THRESHOLD}: of `{REFERENCE}` the median, lowest and highest of the seeds; of the others the
+median as a multiple of that one, with how many seeds get there if not all do. A median that
+never gets there has no multiple. **Bold**: told apart from `{REFERENCE}` by an exact rank test
+of the seeds, in which one that never gets there costs more than any that does. Chance makes a
+difference as clear in {100 * CHANCE:.0f} % of comparisons at most, in each direction: three
+seeds against three must not overlap at all. With many rows some will be bold by chance. Compared
+are runs of one budget, and CPU seconds those of one kind of processor, device and precision.
+Pushes are those of the forward simulator; reverse solves are in the table of run times.
+`planner` searches anew from every start: its costs are those of one start, and in brackets is
+after how many starts they exceed those of `{REFERENCE}`, if it solves as much. `{RANDOMISED}` is
+left out, as its starts are others."""
 
 
-def _costs(runs: Sequence[RunResult], cost: str) -> Floats:
+def _costs(runs: Runs, cost: str) -> Floats:
     """Returns the cost of each run until it solves the task, infinite if it never does. [runs]
 
     The cost "interactions" leaves out runs without interactions.
@@ -42,57 +47,78 @@ def _costs(runs: Sequence[RunResult], cost: str) -> Floats:
     return np.array([np.inf if value is None else value for value in needed])
 
 
-def _processors(runs: Sequence[RunResult]) -> set[str | None]:
-    return {run.versions.get("processor") for run in runs}
+def _cpu_time(run: RunResult) -> tuple[object, ...] | None:
+    """Returns what CPU seconds depend on beside the method; None if the run does not say."""
+    names = ("device", "precision", "runs_in_process")
+    found = (run.versions.get("processor"), *(run.summary.get(name) for name in names))
+    return None if None in found or run.total_cost("cpu_s") is None else found
 
 
-def _relation(reference: Floats, costs: Floats) -> str:
-    """Returns whether the reference needs fewer or more than `costs`, or is level with them."""
-    if rank_test(reference, costs) <= CHANCE:
+def _obstacle(reference: Runs, runs: Runs, cost: str) -> str:
+    """Returns why costs of `runs` and `reference` are not comparable; "" if they are."""
+    if any(run.is_planned for run in runs):
+        return "planned"
+    if len({run.budget for run in (*reference, *runs)}) > 1:
+        return "other budget"
+    kinds = {_cpu_time(run) for run in (*reference, *runs)}
+    if cost == "cpu_s" and (None in kinds or len(kinds) > 1):
+        return "not comparable"
+    return ""
+
+
+def _relation(reference: Floats, others: Floats) -> str:
+    """Returns whether the reference needs fewer or more than the others, as far as can be told."""
+    count = len(reference)
+    if comb(count + len(others), count) * CHANCE < 1.0:
+        return _FEW
+    if rank_test(reference, others) <= CHANCE:
         return _FEWER
-    return _MORE if rank_test(costs, reference) <= CHANCE else _LEVEL
+    return _MORE if rank_test(others, reference) <= CHANCE else _LEVEL
 
 
-def _are_comparable(reference: Sequence[RunResult], runs: Sequence[RunResult], cost: str) -> bool:
-    if any(run.is_planned for run in runs):
-        return False
-    return cost != "cpu_s" or len(_processors([*reference, *runs])) == 1
+def _number(value: float, cost: str) -> str:
+    return "never" if np.isinf(value) else f"{value / _UNITS[cost]:.3g}"
 
 
-def _own_cell(runs: Sequence[RunResult], cost: str) -> str:
-    costs = [value if np.isfinite(value) else None for value in _costs(runs, cost)]
-    if costs and not any(value is not None for value in costs):
-        return "never"
-    return spread(costs if cost == "cpu_s" else [thousands(value) for value in costs], "count")
-
-
-def _planned_cell(reference: Floats, runs: Sequence[RunResult], cost: str) -> str:
-    """Returns the mean cost of a search from one start."""
-    totals = [run.total_cost(cost) or 0.0 for run in runs]
-    starts = sum(run.summary.get("final_episodes") or 0 for run in runs)
-    if cost == "interactions" or not starts:
+def _own_cell(runs: Runs, cost: str) -> str:
+    costs = _costs(runs, cost)
+    if len(costs) == 0 or (cost == "cpu_s" and any(_cpu_time(run) is None for run in runs)):
         return NO_VALUE
-    of_start = sum(totals) / starts
-    words = f"{of_start if cost == 'cpu_s' else of_start / 1000.0:.3g} a start"
-    after = float(np.median(reference)) / of_start if len(reference) and of_start else np.inf
-    return f"{words} ({after:.3g})" if np.isfinite(after) else words
+    middle, low, high = (_number(of(costs), cost) for of in (np.median, np.min, np.max))
+    return middle if len(costs) == 1 or low == high else f"{middle} ({low}–{high})"
 
 
-def _cell(reference: Sequence[RunResult], runs: Sequence[RunResult], cost: str) -> str:
+def _planned_cell(reference: Runs, runs: Runs, cost: str) -> str:
+    """Returns the mean cost of a search from one start."""
+    totals = [total for run in runs if (total := run.total_cost(cost)) is not None]
+    if cost == "interactions" or not totals:
+        return NO_VALUE
+    of_start = float(np.mean(totals)) / runs[0].planned_starts
+    words = f"{_number(of_start, cost)} a start"
+    middle = float(np.median(_costs(reference, cost)))
+    same = (
+        cost != "cpu_s" or len({run.versions.get("processor") for run in (*reference, *runs)}) < 2
+    )
+    if not same or np.isinf(middle) or mean_success(runs) < THRESHOLD or of_start == 0.0:
+        return words
+    return f"{words} ({middle / of_start:.3g})"
+
+
+def _cell(reference: Runs, runs: Runs, cost: str) -> str:
+    obstacle = _obstacle(reference, runs, cost)
+    if obstacle:
+        is_planned = obstacle == "planned"
+        return _planned_cell(reference, runs, cost) if is_planned else obstacle
     own, costs = _costs(reference, cost), _costs(runs, cost)
-    if any(run.is_planned for run in runs):
-        return _planned_cell(own, runs, cost)
     if len(costs) == 0:
         return NO_VALUE
-    if not _are_comparable(reference, runs, cost):
-        return "other processor"
     solved = int(np.isfinite(costs).sum())
     middle, own_middle = float(np.median(costs)), float(np.median(own))
     has_ratio = np.isfinite(middle) and np.isfinite(own_middle) and own_middle > 0.0
     parts = [f"{middle / own_middle:.2f} ×"] if has_ratio else []
     parts += [f"{solved} of {len(costs)}"] if solved < len(costs) or not has_ratio else []
     words = ", ".join(parts) if solved else "never"
-    return words if _relation(own, costs) == _LEVEL else f"**{words}**"
+    return f"**{words}**" if _relation(own, costs) in (_FEWER, _MORE) else words
 
 
 def _compared(comparison: Comparison, task: str) -> dict[str, list[RunResult]]:
@@ -105,30 +131,23 @@ def _compared(comparison: Comparison, task: str) -> dict[str, list[RunResult]]:
     return {label: runs for label, runs in found.items() if runs}
 
 
-def _sentence(
-    reference: Sequence[RunResult], others: Mapping[str, Sequence[RunResult]], cost: str
-) -> str:
+def _sentence(reference: Runs, others: Mapping[str, Runs], cost: str) -> str:
     """Returns how the reference stands beside the other methods, swept settings left out."""
     own = _costs(reference, cost)
-    found: dict[str, list[str]] = {_FEWER: [], _LEVEL: [], _MORE: []}
+    found: dict[str, list[str]] = {_FEWER: [], _LEVEL: [], _MORE: [], _FEW: []}
     for label, runs in others.items():
         costs = _costs(runs, cost)
-        if "@" not in label and len(costs) and _are_comparable(reference, runs, cost):
+        if "@" not in label and len(costs) and not _obstacle(reference, runs, cost):
             found[_relation(own, costs)].append(f"`{label}`")
     parts = [f"{words} {', '.join(labels)}" for words, labels in found.items() if labels]
     return f"{_COST_NAMES[cost]}: {'; '.join(parts)}." if parts else ""
 
 
-def has_comparison(comparison: Comparison) -> bool:
-    """Returns whether there is a task with results of the reference and of another label."""
-    return any(
-        comparison.done(task, REFERENCE) and _compared(comparison, task)
-        for task in comparison.tasks
-    )
-
-
 def cost_comparison(comparison: Comparison) -> str:
-    """Returns sentences for each task, and the table of the figures behind them."""
+    """Returns sentences for each task, and the table of the figures behind them.
+
+    Returns "" if there is no task with results of the reference and of another label.
+    """
     sentences, rows = [], []
     for task in comparison.tasks:
         reference, others = comparison.done(task, REFERENCE), _compared(comparison, task)
@@ -138,8 +157,9 @@ def cost_comparison(comparison: Comparison) -> str:
         sentences += [f"- **{task}**. {' '.join(told)}"] if told else []
         rows.append([task, f"`{REFERENCE}`", *(_own_cell(reference, cost) for cost in COSTS)])
         for label, runs in others.items():
-            cells = [_cell(reference, runs, cost) for cost in COSTS]
-            rows.append([task, f"`{label}`", *cells])
+            rows.append([task, f"`{label}`", *(_cell(reference, runs, cost) for cost in COSTS)])
+    if not rows:
+        return ""
     shown = table(["task", "method", *(_COST_HEADS[cost] for cost in COSTS)], rows, left=2)
     lead = [f"What `{REFERENCE}` needs until it solves {THRESHOLD}:", "\n".join(sentences)]
     return "\n\n".join([*(lead if sentences else []), shown])

@@ -16,12 +16,14 @@ from rtg.learn.robustness import AS_TRAINED
 from rtg.pictures import plots
 
 NOTE = """\
-Success of the final policies (`./run.sh evaluate`), means ± standard deviations over the seeds (in
-brackets how many, and of how many episodes each): from other starts, with Gaussian noise on the
-poses that the policy sees, with friction of all bodies, masses of the objects or strides
+Success of the final policies (`./run.sh evaluate`), means ± standard deviations over the seeds
+(in brackets how many, and of how many episodes each): from other starts, with Gaussian noise on
+the poses that the policy sees, with friction of all bodies, masses of the objects or strides
 multiplied, with bodies that coast after a push, in other simulators, if these are installed and
-have what the task needs. Starts outside the arena, or in which bodies overlap, are drawn anew.
+have what the task needs. Objects that are not moved have one start in most tasks, so that a seed
+has 0 or 1 there. Starts outside the arena, or in which bodies overlap, are drawn anew.
 `ddqn_rtg_dr` has its own, wider starts in all rows but those of moved objects."""
+_Name = tuple[str, str]  # group and label of a variant
 # Groups of variants that the picture shows, with the name of their axis, and the amount as trained.
 PANELS = (
     ("objects moved", "objects moved by up to [m]", None),
@@ -46,7 +48,7 @@ def is_evaluated(comparison: Comparison, task: str) -> bool:
     return bool(_evaluated(comparison, task))
 
 
-def _by_variant(run: RunResult) -> dict[tuple[str, str], float | None]:
+def _by_variant(run: RunResult) -> dict[_Name, float | None]:
     """Returns the success of a run by group and label of the variant; None if not possible."""
     return {(row["group"], row["label"]): row["success"] for row in run.evaluation}
 
@@ -58,17 +60,15 @@ def robustness_table(comparison: Comparison, task: str) -> str:
         for label, runs in _evaluated(comparison, task).items()
     }
     variants = dict.fromkeys(variant for runs in found.values() for run in runs for variant in run)
-    rows = [
-        [*variant, *(_cell([run.get(variant) for run in runs]) for runs in found.values())]
-        for variant in variants
-    ]
+    rows = [[*variant, *(_cell(runs, variant) for runs in found.values())] for variant in variants]
     heads = [_head(label, runs) for label, runs in _evaluated(comparison, task).items()]
     return table([task, "", *heads], rows, left=2)
 
 
-def _cell(successes: Sequence[float | None]) -> str:
-    words = spread(successes, ".2f")
-    return "not possible" if words == NO_VALUE else words
+def _cell(runs: Sequence[Mapping[_Name, float | None]], variant: _Name) -> str:
+    words = spread([run.get(variant) for run in runs], ".2f")
+    was_tried = any(variant in run for run in runs)
+    return "not possible" if words == NO_VALUE and was_tried else words
 
 
 def _head(label: str, runs: Sequence[RunResult]) -> str:

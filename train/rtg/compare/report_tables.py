@@ -107,9 +107,14 @@ _COST_COLUMNS: tuple[Column, ...] = (
 def _cell(done: Sequence[RunResult], column: Column) -> str:
     _, name, form, unit = column
     values = [unit(run.figures()[name]) for run in done]
-    learns = any(not run.is_planned for run in done)
-    never = "_to_" in name and learns and not any(value is not None for value in values)
-    return "never" if never else spread(values, form)
+    return "never" if "_to_" in name and _never_reach(done, name) else spread(values, form)
+
+
+def _never_reach(done: Sequence[RunResult], cost: str) -> bool:
+    """Returns whether no run that learns reaches the success that `cost` ends with."""
+    reached = f"interactions_to_{cost.rpartition('_')[2]}"
+    learners = [run.figures()[reached] for run in done if not run.is_planned]
+    return bool(learners) and all(value is None for value in learners)
 
 
 def _task_table(comparison: Comparison, task: str, columns: Sequence[Column]) -> str:
@@ -268,8 +273,9 @@ def _method_table(
     comparison: Comparison,
     made: str,
     columns: Sequence[tuple[str, Callable[[RunResult], float | None], str]],
+    more: Sequence[Sequence[str]] = (),
 ) -> str:
-    """Returns a table with a row for each task and label.
+    """Returns a table with a row for each task and label, and the rows `more` if it has any.
 
     Runs whose summary has no count `made` above 0 have no figures. If no run has, there is no row.
     """
@@ -277,28 +283,28 @@ def _method_table(
     for task in comparison.tasks:
         for label in comparison.labels:
             done = comparison.done(task, label)
-            cells = [
-                spread([of(run) if run.summary.get(made) else None for run in done], form)
-                for _, of, form in columns
-            ]
-            rows += (
-                [[task, f"`{label}`", *cells]] if any(run.summary.get(made) for run in done) else []
-            )
-    return table(["task", "method", *(name for name, _, _ in columns)], rows, left=2)
+            has_figures = [bool(run.summary.get(made)) for run in done]
+            if not any(has_figures):
+                continue
+            cells = []
+            for _, of, form in columns:
+                found = zip(done, has_figures, strict=True)
+                cells.append(spread([of(run) if has else None for run, has in found], form))
+            rows.append([task, f"`{label}`", *cells])
+    heads = ["task", "method", *(name for name, _, _ in columns)]
+    shown = [[*row, *([""] * (len(heads) - len(row)))] for row in more] if rows else []
+    return table(heads, [*rows, *shown], left=2)
+
+
+_OF_THE_PAPER = (
+    ("tasks with joints", "the paper", "51.0", "1.07"),
+    ("tasks without joints", "the paper", "39.6", "1.07"),
+)
 
 
 def runtime_table(comparison: Comparison) -> str:
-    """Returns the table of computing times per reverse solve and per push (Appendix E).
-
-    The last two rows are the paper's.
-    """
-    own = _method_table(comparison, "candidates", _RUNTIME_COLUMNS)
-    blanks = [""] * (len(_RUNTIME_COLUMNS) - 2)
-    papers = [
-        ["with joints", "the paper", "51.0", "1.07"],
-        ["without", "the paper", "39.6", "1.07"],
-    ]
-    return "\n".join([own, *("| " + " | ".join([*row, *blanks]) + " |" for row in papers)])
+    """Returns the table of computing times per reverse solve and per push (Appendix E)."""
+    return _method_table(comparison, "candidates", _RUNTIME_COLUMNS, _OF_THE_PAPER)
 
 
 def data_table(comparison: Comparison) -> str:

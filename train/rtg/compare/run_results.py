@@ -46,7 +46,7 @@ class RunResult:
     summary: dict[str, Any]  # summary.json; this and the next two are {} unless done
     versions: dict[str, Any]
     # Columns of progress.csv [N]; `pushes` and `cpu_s` are with those of the generation, and
-    # without those of evaluations.
+    # without those of evaluations. `cpu_s` is NaN where the run does not know its evaluations'.
     curve: dict[str, Floats]
     train: _core.TrainConfig | None  # None unless the run is done
     evaluation: Sequence[Mapping[str, Any]] = ()  # the rows of evaluation.json, if there is one
@@ -70,10 +70,19 @@ class RunResult:
         return self.train is not None and self.train.learner == "planning"
 
     @property
+    def planned_starts(self) -> int:
+        """The number of starts that a planner searches from."""
+        return self.train.eval_episodes if self.train is not None else 0
+
+    @property
+    def budget(self) -> int:
+        """The number of interactions, or of rounds of learning, that the run was given."""
+        return self.train.interactions if self.train is not None else 0
+
+    @property
     def ended_early(self) -> bool:
         """Returns whether training ended before the budget, as its success was enough."""
-        budget = self.train.interactions if self.train is not None and self.interacts else 0
-        return bool(self.summary["interactions"] < budget)
+        return bool(self.curve) and self.curve["interactions"][-1] < self.budget
 
     @property
     def commit(self) -> str | None:
@@ -112,7 +121,7 @@ class RunResult:
 
     def total_cost(self, cost: str) -> float | None:
         """Returns the cost of the run until its last evaluation; None without evaluations."""
-        return costs(self.curve, cost)[-1] if self.curve else None
+        return _known(costs(self.curve, cost)[-1]) if self.curve else None
 
     def success_at_third(self) -> float | None:
         """Returns the success of the last evaluation within the first third of the budget.
@@ -139,7 +148,11 @@ class RunResult:
             return None
         success = np.append(self.curve["success_rate"], self.summary["success_rate"])
         first = first_reach(success, threshold)
-        return None if first is None else costs(self.curve, cost)[first]
+        return None if first is None else _known(costs(self.curve, cost)[first])
+
+
+def _known(value: float) -> float | None:
+    return None if np.isnan(value) else value
 
 
 @dataclass(frozen=True)
@@ -205,10 +218,11 @@ def read_evaluation(run: Path) -> list[dict[str, Any]]:
         rows = [{"amount": None, "episodes": found["episodes"], **row} for row in found["rows"]]
         for row in rows:
             texts = [row["group"], row["label"]]
-            numbers = [row["success"], row["amount"], row["episodes"]]
+            numbers = [row["success"], row["amount"]]
             if not all(isinstance(text, str) for text in texts):
                 raise TypeError(f"a row is named {texts!r}")
-            if not all(isinstance(number, int | float | None) for number in numbers):
+            is_count = isinstance(row["episodes"], int)
+            if not is_count or not all(isinstance(value, int | float | None) for value in numbers):
                 raise TypeError(f"{texts} has {numbers!r}")
         return rows
 
@@ -232,10 +246,10 @@ def _curve(progress: Path, summary: dict[str, Any]) -> dict[str, Floats]:
         return {}
     if not {*COSTS, *CURVE_COLUMNS} <= curve.keys():
         raise UserError(f"{progress}: lacks columns; legal: the file as the run wrote it")
-    evaluations = np.nan_to_num(curve.get("evaluation_cpu_s", np.array(0.0)))
+    learning_cpu = curve["cpu_s"] - curve.get("evaluation_cpu_s", np.nan)
     return curve | {
         "pushes": curve["pushes"] + (summary.get("replays") or 0),
-        "cpu_s": curve["cpu_s"] - evaluations + (summary.get("generate_cpu_s") or 0.0),
+        "cpu_s": learning_cpu + (summary.get("generate_cpu_s") or 0.0),
     }
 
 

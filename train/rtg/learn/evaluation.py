@@ -18,8 +18,8 @@ Values = Callable[[NDArray[np.float32]], NDArray[Any]]
 
 # Seeds of the held-out starts. They exceed all seeds of runs, so no training start is among them.
 HELD_OUT_SEED = 1 << 63  # for evaluations during training, which decide when to stop
-# For the final result. No decision depends on these starts, neither when to stop nor the choice of
-# a setting: before version 0.2, while settings were chosen, the seed was another one.
+# For the final result: no decision depends on these starts, neither when to stop nor the choice of
+# a setting.
 FINAL_SEED = HELD_OUT_SEED + 2
 FINAL_FACTOR = 10  # number of final episodes per episode of an evaluation during training
 
@@ -45,22 +45,19 @@ class Evaluation(NamedTuple):
         }
 
 
-def held_out_starts(config: _core.Config, seed: int = HELD_OUT_SEED, number: int = 0) -> Floats:
+def held_out_starts(config: _core.Config, number: int = 0) -> Floats:
     """Returns the starts of an evaluation, the same for every run. [episodes, bodies, 3]
 
-    There is one for each of the `train.eval_episodes`. They are of the random stream `seed`, those
-    of evaluation `number`: a policy that is lucky in one is not so in the next.
+    There is one for each of the `train.eval_episodes`. They are those of evaluation `number`: a
+    policy that is lucky in one is not so in the next.
     """
     count = config.train.eval_episodes
-    return _starts(config, seed, range(number * count, (number + 1) * count))
+    return _starts(config, HELD_OUT_SEED, range(number * count, (number + 1) * count))
 
 
-def final_starts(config: _core.Config) -> Floats:
-    """Returns the starts of the final evaluation, the same for every run. [episodes, bodies, 3]
-
-    There are FINAL_FACTOR for each of the `train.eval_episodes`.
-    """
-    return _starts(config, FINAL_SEED, range(FINAL_FACTOR * config.train.eval_episodes))
+def final_starts(config: _core.Config, episodes: int) -> Floats:
+    """Returns the first starts of the final evaluation of every run. [episodes, bodies, 3]"""
+    return _starts(config, FINAL_SEED, range(episodes))
 
 
 def _starts(config: _core.Config, seed: int, of_stream: range) -> Floats:

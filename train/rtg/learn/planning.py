@@ -15,7 +15,7 @@ from rtg import _core, errors
 from rtg.engines import Replay, replay_function
 from rtg.files import checkpoint, run_folder
 from rtg.learn import policy_file
-from rtg.learn.evaluation import FINAL_SEED, Evaluation, Floats, held_out_starts
+from rtg.learn.evaluation import Evaluation, Floats, final_starts
 from rtg.learn.offline_data import Source
 from rtg.learn.training_log import TrainingLog
 
@@ -67,7 +67,7 @@ class Planning:
         self.config, self.task = config, config.task
         self.settings = config.train
         self.discount = config.learner_discount
-        self.starts = held_out_starts(config, FINAL_SEED)
+        self.starts = final_starts(config, config.train.eval_episodes)
         self.plans: list[Plan] = []  # one for each start so far
         self._replay = replay_function(config)
         self.log = TrainingLog(folder)
@@ -108,7 +108,8 @@ class Planning:
             **final.summary(),
             "offline_transitions": 0,
         }
-        self.log.add({**figures, "pushes": pushes, "wall_s": wall, "cpu_s": cpu})
+        times = {"wall_s": wall, "cpu_s": cpu, "evaluation_cpu_s": 0.0}  # nothing but plans
+        self.log.add({**figures, "pushes": pushes, **times})
         figures |= {
             "train_wall_s": round(wall, 3),
             "train_cpu_s": round(cpu, 3),

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rtg import _core
 from rtg.engines import ENGINES, EngineError
 from rtg.errors import UserError
-from rtg.learn.evaluation import FINAL_SEED, Values, evaluate
+from rtg.learn.evaluation import Values, evaluate, final_starts
 
 Floats = NDArray[np.float64]
 
@@ -214,12 +214,7 @@ def evaluate_variant(
         changed = _core.Config.from_file(file, list(variant.settings))
     except _core.ConfigError as error:
         return Row(variant, None, None, _shortened(error))
-    starts = np.stack(
-        [
-            changed.task.jittered_start(changed.evaluation_jitter, FINAL_SEED, k)
-            for k in range(episodes)
-        ]
-    )
+    starts = final_starts(changed, episodes)
     observe = _seen(config.task, variant.noise)
     try:
         found = evaluate(changed, values, starts, config.learner_discount, observe)

@@ -16,7 +16,14 @@ from rtg.learn import device, policy_file, training_result
 from rtg.learn.clock import Clock
 from rtg.learn.cloning import Cloning, imitated
 from rtg.learn.ddqn import DoubleDqn
-from rtg.learn.evaluation import Evaluation, Floats, evaluate, final_starts, held_out_starts
+from rtg.learn.evaluation import (
+    FINAL_FACTOR,
+    Evaluation,
+    Floats,
+    evaluate,
+    final_starts,
+    held_out_starts,
+)
 from rtg.learn.offline_data import OfflineData, Source, read_rows
 from rtg.learn.settings import CHECKPOINT_SETTINGS
 from rtg.learn.training_log import TrainingLog
@@ -287,7 +294,8 @@ class Training:
         The final evaluation has starts of its own. Those of earlier evaluations would be biased: an
         evaluation with chance success may have stopped training.
         """
-        final = self._evaluate(final_starts(self.config))
+        episodes = FINAL_FACTOR * self.settings.eval_episodes
+        final = self._evaluate(final_starts(self.config, episodes))
         weights = self.model.mean.state_dict()
         policy_file.write(self.folder / "model.pt", self.task, self.settings, weights)
         self.log.write_result(final, training_result.figures(self, final))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rtg import _core
 from rtg.engines import simulator
+from rtg.learn.evaluation import FINAL_FACTOR
 from rtg.run.clock import duration
 
 # Pushes simulated for each that is stored: 2.6 to 7.6 with `rrbs` in docs/results/tasks, mostly 4.
@@ -59,6 +60,7 @@ def words(config: _core.Config, transitions: int, interactions: int) -> list[str
         pushes = _PER_TRANSITION * transitions
         said += f"; about {pushes:,.0f} for the transitions, {duration(pushes * push)}"
     if interactions and train.interact and train.learner != "planning":
-        pushes = interactions * (1.0 + train.eval_episodes * config.task.horizon / train.eval_every)
+        episodes = train.eval_episodes * (interactions / train.eval_every + FINAL_FACTOR)
+        pushes = interactions + episodes * config.task.horizon
         said += f"; up to {pushes:,.0f} for learning, {duration(pushes * push)}"
     return [said]
