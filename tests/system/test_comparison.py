@@ -30,7 +30,7 @@ def test_the_reference_is_compared_with_its_rival(tmp_path):
     pooled, run_time = page.split("## All tasks together")[1].split("## Run time")
     rival, reference = (f"| `{method}` | 1 | 0.000 |" for method in ("ddqn_naive", "ddqn_rtg"))
     assert rival in pooled and reference in pooled
-    assert "not told apart from `ddqn_naive`" in page.split("## Beside `ddqn_rtg`")[1]
+    assert "too few seeds to tell from `ddqn_naive`" in page.split("## Beside `ddqn_rtg`")[1]
     summary = json.loads((tmp_path / "gathering/ddqn_rtg/seed-1/summary.json").read_text())
     assert summary["pushing_converged"] > 0 and "| gathering | `ddqn_rtg` |" in run_time
 
