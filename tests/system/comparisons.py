@@ -67,17 +67,15 @@ def wait_for(condition, process):
         time.sleep(0.02)
 
 
-def rows(folder):
-    """A dictionary for each run, from the table for programs."""
-    with (folder / "runs.csv").open() as file:
+def rows(folder, name="runs.csv"):
+    """The rows of a table for programs, of which runs.csv has one for each run."""
+    with (folder / name).open() as file:
         return list(csv.DictReader(file))
 
 
 def figures(folder):
     """All numbers of the tables of TWO tasks but those on how they were come by."""
-    rows = []
-    for name in ("runs.csv", "curves.csv"):
-        with (folder / name).open() as file:
-            rows += [row for row in csv.DictReader(file) if row["task"] in TWO]
-    assert set(rows[0]) >= HOW
-    return [{key: value for key, value in row.items() if key not in HOW | COSTS} for row in rows]
+    both = [*rows(folder), *rows(folder, "curves.csv")]
+    found = [row for row in both if row["task"] in TWO]
+    assert set(found[0]) >= HOW
+    return [{key: value for key, value in row.items() if key not in HOW | COSTS} for row in found]
