@@ -100,6 +100,8 @@ def test_runs_without_a_result_say_why(page):
     assert table_row(page, "ddqn_rtg", "## sorting")[:2] == ["1 unfinished", "–"]
     assert table_row(page, "rcg", "## sorting")[:2] == ["1 not run", "–"]
     assert table_row(page, "rcg")[:2] == ["not run", "–"]
+    of_task = page.split("## sorting")[1].split("\n## ")[0]
+    assert "| `her` | not run |" in of_task and f"`ddqn_rtg@{SWEPT}`" not in of_task
     missing = "`dqn`, `ddqn`, `ddqn_random`, `ddqn_scatter`, `ddqn_forward`, `ddqn_rtg_dr`, "
     assert f"Not run: {missing}`cql_rtg`, `bc_rtg`, `planner`." in page
     assert "- `gathering/her/seed-1` failed: ended with exit status 1: MemoryError" in page

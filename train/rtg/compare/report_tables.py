@@ -118,10 +118,15 @@ def _never_reach(done: Sequence[RunResult], cost: str) -> bool:
 
 
 def _task_table(comparison: Comparison, task: str, columns: Sequence[Column]) -> str:
-    """Returns a table with a row for each label, even without a result."""
+    """Returns a table with a row for each method, even without a result.
+
+    Swept settings have one on the tasks that they were asked for on.
+    """
     rows = []
     for label in comparison.labels:
         runs = comparison.row(task, label)
+        if not runs and "@" in label:
+            continue
         done = [run for run in runs if run.done]
         rows.append(
             [f"`{label}`", seeds_by_state(runs), *(_cell(done, column) for column in columns)]
