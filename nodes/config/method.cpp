@@ -40,7 +40,11 @@ const std::array<Settings, kMethods.size()>& table() {
       Settings{{"search", "generator", "rrbs"},
                {"search", "randomise", "true"},
                {"train", "randomise", "true"}},
-      online({{"train", "double_q", "true"}, {"train", "hindsight", "4"}}),
+      // train/rtg/learn/hindsight.py says why.
+      online({{"train", "double_q", "true"},
+              {"train", "hindsight", "4"},
+              {"train", "symmetry", "false"},
+              {"train", "learning_rate", "1.0e-4"}}),
       online({{"train", "double_q", "true"}, {"train", "curriculum", "0.9"}}),
       Settings{{"search", "generator", "rrbs"},
                {"train", "interact", "false"},

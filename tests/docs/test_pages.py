@@ -1,14 +1,12 @@
 """The README and the pages of docs/: what stands there as code is legal, and runs."""
 
 import ast
-import csv
 import importlib
 import importlib.util
 import itertools
 import os
 import re
 import shlex
-import statistics
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -202,44 +200,6 @@ def test_files_that_python_runs_exist() -> None:
     assert "docs/site/figures.py" in files
     for file in files:
         ast.parse((paths.ROOT / file).read_text())
-
-
-def rows_of(page: Path) -> dict[str, list[str]]:
-    """Returns the rows of tables by the name in their first cell."""
-    found = re.findall(r"^\| `?(\w+)`? \|(.*)\|$", page.read_text(), re.MULTILINE)
-    return {name.lower(): [cell.strip() for cell in cells.split("|")] for name, cells in found}
-
-
-def figures(report: str) -> dict[str, tuple[str, str]]:
-    """Returns success and thousand interactions to 0.95 of ddqn_rtg, means of seeds, by task."""
-    with (paths.ROOT / "docs" / "results" / report / "runs.csv").open() as file:
-        of_method = [run for run in csv.DictReader(file) if run["method"] == "ddqn_rtg"]
-    found = {}
-    for task, group in itertools.groupby(of_method, lambda run: run["task"]):
-        runs = list(group)
-        success = statistics.mean(float(run["success_rate"]) for run in runs)
-        known = [float(to) for run in runs if (to := run["interactions_to_95"])]
-        few = "" if len(known) == len(runs) else f" ({len(known)} of {len(runs)})"
-        found[task] = f"{success:.2f}", f"{statistics.mean(known) / 1000:.0f}{few}"
-    return found
-
-
-def test_the_table_of_the_readme_is_that_of_the_reports() -> None:
-    rows = rows_of(paths.ROOT / "README.md")
-    reported = {**figures("tasks"), **figures("whole")}
-    assert {task: tuple(cells[-2:]) for task, cells in rows.items() if task != "task"} == reported
-
-
-def test_the_page_of_results_says_what_the_reports_say() -> None:
-    page = (paths.ROOT / "docs" / "results" / "index.md").read_text()
-    for task, (success, to_95) in figures("whole").items():
-        name = {"gathering": "Gathering", "sorting": "Sorting", "art_manip": "ArtManip"}[task]
-        assert re.search(rf"^\| {name} \| {success} .*\| {to_95},000 ", page, re.MULTILINE)
-    table = re.search(r"^\| `drawer`.*\n\|.*\n\|.*", page, re.MULTILINE)
-    assert table
-    head, _, row = (line.strip("| ").split(" | ") for line in table[0].splitlines())
-    written = dict(zip((name.strip("`") for name in head), row, strict=True))
-    assert written == {task: ", ".join(pair) for task, pair in figures("tasks").items()}
 
 
 def test_the_examples_have_their_pictures_and_output() -> None:

@@ -41,7 +41,7 @@ def test_methods_differ_in_these_values_alone() -> None:
         "ddqn_forward": rtg,
         "ddqn_rtg": rtg,
         "ddqn_rtg_dr": {**rtg, "randomise": True},
-        "her": {**vanilla, "hindsight": 4},
+        "her": {**vanilla, "hindsight": 4, "symmetry": False, "learning_rate": 1e-4},
         "rcg": {**vanilla, "curriculum": 0.9},
         "cql_rtg": {**alone, "cql_weight": 1.0},
         "bc_rtg": {**alone, "learner": "cloning"},

@@ -20,6 +20,11 @@ Choices that give the method its best chance:
 - Hindsight goals are drawn only from later states that s is not near to. A layout near s teaches
   nothing, because an episode that desires it ends before s. Without such a later state the
   transition keeps the desired layout of its episode.
+- Objects keep their order (train.symmetry is off), and the learning rate is a fifth of the default.
+  With both, success on Gathering reaches 0.95 within 117,000 interactions in four of four runs
+  (two of them with half that rate), with one of them alone in one of eight. Desired layouts ask
+  for all objects to move. In hindsight goals every object is in the wrong place in about half of
+  the transitions; if the nearest one comes first in the input, the third one is so in 28 % only.
 """
 
 from __future__ import annotations
