@@ -29,7 +29,7 @@ struct SearchConfig {
   int transitions = 60000;         // stored in all, branches included
   int branches = 4;                // other headings simulated in the state of each stored step
   int breadth = 10;                // B, nodes kept per layer of a tree
-  int forward_breadth = 100;       // the same in searches forwards
+  int forward_breadth = 300;       // the same in searches forwards
   int plans_per_node = 4;          // plans simulated per layer, as a multiple of breadth
   double whole_plan_share = 0.05;  // share of plans stored whole; of the rest, the first step
   int depth = 100;                 // D, layers per tree at most; no more than task.horizon

@@ -89,18 +89,18 @@ std::optional<Method> method_named(std::string_view name) {
 std::optional<std::string_view> value_of(std::optional<Method> method,
                                          const MethodSetting& setting) {
   if (!method) return std::nullopt;
-  for (const auto& [section, key, value, is_size] : settings_of(*method))
+  for (const auto& [section, key, value, of_task] : settings_of(*method))
     if (section == setting.section && key == setting.key) return value;
   return std::nullopt;
 }
 
 /// Removes the file's values of all keys that methods set: the method `name` of the command line
-/// takes precedence over them. A size stays that neither this method nor that of the file gives.
+/// takes precedence over them. Those of_task stay that neither this method nor the file's gives.
 void clear_for_method(ConfigNode& root, std::string_view name) {
   const ConfigEntry* of_file = find(root, "run", "method");
   const auto before = of_file ? method_named(of_file->value.scalar) : RunConfig{}.method;
   const auto is_to_go = [&](const MethodSetting& setting, const ConfigNode& value) {
-    return !setting.is_size || value_of(method_named(name), setting) ||
+    return !setting.of_task || value_of(method_named(name), setting) ||
            value_of(before, setting) == value.scalar;
   };
   for (std::size_t k = 0; k < kMethods.size(); ++k)
@@ -153,7 +153,7 @@ void read_section(const ConfigNode& root, const std::string& name, Section& conf
 void apply_method(ConfigNode& root) {
   RunConfig run;
   read_section(root, "run", run);
-  for (const auto& [name, key, value, is_size] : settings_of(run.method)) {
+  for (const auto& [name, key, value, of_task] : settings_of(run.method)) {
     const std::string origin =
         "run.method " + std::string(kMethods[static_cast<std::size_t>(run.method)]);
     ConfigNode& section = section_of(root, name, origin);

@@ -9,7 +9,7 @@ namespace {
 using Settings = std::vector<MethodSetting>;
 
 /// Adds the exploration settings of a learner without data of a search. It has to find successes by
-/// its own exploration.
+/// its own exploration. What `more` gives stays.
 Settings unguided(Settings more) {
   const Settings exploration{{"train", "epsilon_start", "1.0"},
                              {"train", "epsilon_end", "0.05"},
@@ -32,7 +32,7 @@ const std::array<Settings, kMethods.size()>& table() {
       online({{"train", "double_q", "true"}}),
       // Uniform mixing: otherwise half of every batch would be walks, which hardly ever succeed.
       unguided({{"search", "generator", "random"}, {"train", "offline_share", "-1.0"}}),
-      unguided({{"search", "generator", "scatter"}, {"train", "offline_share", "-1.0"}}),
+      unguided({{"search", "generator", "scatter"}, {"train", "offline_share", "0.25"}}),
       // Few kinematic steps come out in the simulator: narrow trees of them end early.
       Settings{{"search", "generator", "naive"}, {"search", "breadth", "100", true}},
       Settings{{"search", "generator", "forward"}},
@@ -43,9 +43,13 @@ const std::array<Settings, kMethods.size()>& table() {
       // train/rtg/learn/hindsight.py says why.
       online({{"train", "double_q", "true"},
               {"train", "hindsight", "4"},
-              {"train", "symmetry", "false"},
-              {"train", "learning_rate", "1.0e-4"}}),
-      online({{"train", "double_q", "true"}, {"train", "curriculum", "0.9"}}),
+              {"train", "symmetry", "false", true},
+              {"train", "learning_rate", "1.0e-04", true}}),
+      // Starts are solved sometimes only by a policy that acts from the first interaction on.
+      online({{"train", "double_q", "true"},
+              {"train", "curriculum", "0.9"},
+              {"train", "learning_rate", "1.0e-04", true},
+              {"train", "epsilon_start", "0.3"}}),
       Settings{{"search", "generator", "rrbs"},
                {"train", "interact", "false"},
                {"train", "cql_weight", "1.0"}},

@@ -30,7 +30,7 @@ inline constexpr std::array<std::string_view, 13> kMethods{
 /// A value that a method gives to a key of another section of the configuration.
 struct MethodSetting {
   std::string_view section, key, value;
-  bool is_size = false;  // how much, not what: a task may choose it for all other methods
+  bool of_task = false;  // how, not what it learns: a task chooses it for all other methods
 };
 
 /// Returns the settings of `method`. They are all that distinguishes it from other methods. A

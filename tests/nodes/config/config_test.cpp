@@ -409,6 +409,8 @@ TEST(Config, AMethodGivesTheValuesThatAreNotGiven) {
   train.nearby_share = 0.0;
   train.contact_share = 0.5;
   train.hindsight = 4;
+  train.symmetry = false;
+  train.learning_rate = 1e-4;
   EXPECT_EQ(config.run.method, Method::kHer);
   EXPECT_EQ(text_of(config.train), text_of(train));
 }
@@ -438,6 +440,19 @@ TEST(Config, ABreadthOfTheTaskIsThatOfEachMethodThatHasNoneOfItsOwn) {
   EXPECT_EQ(breadth(task, "ddqn_naive"), 100);
   const std::string naive = "search: {breadth: 100}\nrun: {method: ddqn_naive}\n";
   EXPECT_EQ(breadth(naive, "ddqn_rtg"), search::SearchConfig{}.breadth);
+}
+
+TEST(Config, ALearningRateOfTheTaskIsThatOfEachMethodThatHasNoneOfItsOwn) {
+  const auto rate = [](const std::string& file, const std::string& method) {
+    const std::vector<std::string> overrides{"run.method=" + method};
+    return parsed(file, overrides).train.learning_rate;
+  };
+  const std::string task = "train: {learning_rate: 0.002}\n";
+  EXPECT_EQ(rate(task, "ddqn_rtg"), 0.002);
+  EXPECT_EQ(rate(task, "her"), 1e-4);
+  const std::string of_her = canonical_yaml(parsed("", {{"run.method=her"}}));
+  const Config other = parse_config(of_her, "config.yaml", {{"run.method=ddqn_rtg"}});
+  EXPECT_EQ(other.train.learning_rate, TrainConfig{}.learning_rate);
 }
 
 TEST(Config, CloningImitatesTheStepsOfTrees) {
