@@ -51,9 +51,9 @@ struct MethodSetting {
 ///   bc_rtg        the data of ddqn_rtg without interaction; imitates the steps of the trees
 ///   planner       no learning: a forward beam search from each start of the evaluation
 ///
-/// Methods without offline data or with data of random walks explore more. Their ε starts at 1.
-/// Half of the exploring actions seek contact; the others are uniform, not near the greedy heading,
-/// which means nothing yet.
+/// Methods without offline data or with data of random walks explore more. Their ε starts at 1,
+/// that of rcg at 0.3. Half of the exploring actions seek contact; the others are uniform, not near
+/// the greedy heading, which means nothing yet.
 std::span<const MethodSetting> settings_of(Method method);
 
 }  // namespace rtg::config
