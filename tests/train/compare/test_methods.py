@@ -44,7 +44,7 @@ def test_methods_differ_in_these_values_alone() -> None:
         "her": {**vanilla, "hindsight": 4, "symmetry": False, "learning_rate": 1e-4},
         "rcg": {**vanilla, "curriculum": 0.9, "learning_rate": 1e-4, "epsilon_start": 0.3},
         "cql_rtg": {**alone, "cql_weight": 1.0},
-        "bc_rtg": {**alone, "learner": "cloning"},
+        "bc_rtg": {**alone, "learner": "cloning", "learning_rate": 1e-4},
         "planner": {**alone, "learner": "planning", "offline": False},
     }
     assert (rtg["epsilon_end"], rtg["epsilon_share"]) == (0.02, 0.2)
