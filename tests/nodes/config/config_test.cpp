@@ -429,28 +429,25 @@ TEST(Config, AMethodAmongTheOverridesStandsAboveTheFileButNotAboveTheOthers) {
   EXPECT_EQ(parsed(file).search.generator, search::Generator::kNaive);
 }
 
+/// The configuration of a file for a method of the command line.
+Config for_method(const std::string& file, const std::string& method) {
+  return parsed(file, {"run.method=" + method});
+}
+
 TEST(Config, ABreadthOfTheTaskIsThatOfEachMethodThatHasNoneOfItsOwn) {
-  const auto breadth = [](const std::string& file, const std::string& method) {
-    const std::vector<std::string> overrides{"run.method=" + method};
-    return parsed(file, overrides).search.breadth;
-  };
   const std::string task = "search: {breadth: 70}\n";
-  EXPECT_EQ(breadth(task, "ddqn_rtg"), 70);
-  EXPECT_EQ(breadth(task, "bc_rtg"), 70);
-  EXPECT_EQ(breadth(task, "ddqn_naive"), 100);
+  EXPECT_EQ(for_method(task, "ddqn_rtg").search.breadth, 70);
+  EXPECT_EQ(for_method(task, "bc_rtg").search.breadth, 70);
+  EXPECT_EQ(for_method(task, "ddqn_naive").search.breadth, 100);
   const std::string naive = "search: {breadth: 100}\nrun: {method: ddqn_naive}\n";
-  EXPECT_EQ(breadth(naive, "ddqn_rtg"), search::SearchConfig{}.breadth);
+  EXPECT_EQ(for_method(naive, "ddqn_rtg").search.breadth, search::SearchConfig{}.breadth);
 }
 
 TEST(Config, ALearningRateOfTheTaskIsThatOfEachMethodThatHasNoneOfItsOwn) {
-  const auto rate = [](const std::string& file, const std::string& method) {
-    const std::vector<std::string> overrides{"run.method=" + method};
-    return parsed(file, overrides).train.learning_rate;
-  };
   const std::string task = "train: {learning_rate: 0.002}\n";
-  EXPECT_EQ(rate(task, "ddqn_rtg"), 0.002);
-  EXPECT_EQ(rate(task, "her"), 1e-4);
-  const std::string of_her = canonical_yaml(parsed("", {{"run.method=her"}}));
+  EXPECT_EQ(for_method(task, "ddqn_rtg").train.learning_rate, 0.002);
+  EXPECT_EQ(for_method(task, "her").train.learning_rate, 1e-4);
+  const std::string of_her = canonical_yaml(for_method("", "her"));
   const Config other = parse_config(of_her, "config.yaml", {{"run.method=ddqn_rtg"}});
   EXPECT_EQ(other.train.learning_rate, TrainConfig{}.learning_rate);
 }
